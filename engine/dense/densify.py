@@ -35,7 +35,7 @@ from .credibility import vertex_credibility
 from .dense_hypotheses import SparseStart
 from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from .functional_maps import nearest_both_ways
-from .quality import DenseMatch, assess_maps, with_alternatives, with_pieces
+from .quality import DenseMatch, assess_maps, judged_map, with_alternatives, with_pieces
 
 _FEWEST = 3
 """Pairs of points that a correspondence to be extended has at least: fewer do not say how surfaces lie."""
@@ -219,12 +219,15 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
         there = pinned(main_x, main_y, there, here, partners, search=y.dense_search)
         back = pinned(main_y, main_x, back, partners, here, search=x.dense_search)
     yield Progress(0.8, "Judging the map")
-    doubts = _doubts(pair)
-    alike, in_place = pair.likeness, pair.in_place
-    quality = assess_maps(main_x, main_y, there, back, pair.margin, likeness=alike, in_place=in_place, doubt=doubts[0])
-    yield Progress(0.85, "Mapping every vertex")
+    doubts, (alike, in_place) = _doubts(pair), (pair.likeness, pair.in_place)
+    known = judged_map(main_x, main_y, there, back, doubts[0])
+    yield Progress(0.82, "Judging the map")
+    known_back = judged_map(main_y, main_x, back, there, doubts[1])
+    yield Progress(0.84, "Judging the map")
+    quality = assess_maps((main_x, main_y), there, (known, known_back), pair.margin, likeness=alike, in_place=in_place)
     credibility = vertex_credibility(quality.orientation, pair.margin, alike, in_place)
-    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, credibility=credibility, doubts=doubts)
+    confidences = known.confidence, known_back.confidence
+    steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, confidences=confidences, credibility=credibility)
     whole = yield from within(steps, 0.85, 1.0)
     del there, back  # of a million vertices, what is not needed any more counts
     forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)

@@ -108,15 +108,36 @@ class DenseMatch:
         return f"<DenseMatch: {sizes}, confidence {self.quality.confidence:.2f}>"
 
 
-def map_confidence(
+@dataclass(frozen=True, eq=False)
+class JudgedMap:
+    """What is known of each vertex of a surface by the map from it and the map back.
+
+    Attributes
+    ----------
+    partnered : (n,) array of bool
+        Whether it has a partner on the other surface.
+    errors : (n,) array of float
+        How far its image may err, in sqrt(area): by the way there and back, or by what is known otherwise.
+    confidence : (n,) array of float
+        How far its image may be trusted if the map is right as a whole, 0 to 1: about the part of such vertices whose
+        images are not farther than three hundredths of sqrt(area) from the true ones.  Zero without a partner.
+    distortion : float
+        Mean of the absolute logarithm of the stretch of edges, by area.
+    """
+
+    partnered: Bools
+    errors: Floats
+    confidence: Floats
+    distortion: float
+
+
+def judged_map(
     source: TriangleMesh,
     target: TriangleMesh,
     there: SurfacePoints,
     back: SurfacePoints,
-    *,
-    credibility: float = 1.0,
     doubt: Floats | float = 0.0,
-) -> Floats:
+) -> JudgedMap:
     """Judge each vertex's image by whether the way back leads home, and by how much the surface is stretched there.
 
     Parameters
@@ -125,20 +146,16 @@ def map_confidence(
         The surfaces.
     there, back : SurfacePoints
         A point of the target for each vertex of the source, and the other way round.
-    credibility : float
-        How credible the map is as a whole, see `vertex_credibility`.
     doubt : (n,) array of float, optional
         Distances, in sqrt(area), by which it is known otherwise that images may err: the longer of these and of the
         ways there and back count.
-
-    Returns
-    -------
-    (n,) array of float
-        From 0 to 1, averaged over neighbours: about the part of such vertices whose images are not farther than three
-        hundredths of sqrt(area) from the true ones.  Zero for what has no partner on the target.
     """
-    known = with_partner(source, target, there, back)
-    return _confidence(source, target, there, known, _trips(source, there, back, doubt)) * credibility
+    partnered = with_partner(source, target, there, back)
+    errors = np.maximum(round_trips(source, there, back) / np.sqrt(source.area), doubt)
+    stretch = np.abs(_log_stretch(source, target, there))
+    confidence = trip_confidence(errors) / (1 + np.square(edge_means(source, stretch) / _TRUSTED_STRETCH))
+    confidence = np.clip(neighbour_means(source, confidence), 0, 1) * partnered
+    return JudgedMap(partnered, errors, confidence, float(np.average(stretch, weights=np.square(source.edge_lengths))))
 
 
 def trip_confidence(distances: Floats) -> Floats:
@@ -146,59 +163,41 @@ def trip_confidence(distances: Floats) -> Floats:
     return 1 / (1 + np.square(distances / _TRUSTED_ROUND_TRIP))
 
 
-def _confidence(
-    source: TriangleMesh, target: TriangleMesh, there: SurfacePoints, known: Bools, trips: Floats
-) -> Floats:
-    """Judge images, (n,), by where vertices are known to have a partner, (n,), and how far they may err, (n,)."""
-    stretch = edge_means(source, np.abs(_log_stretch(source, target, there)))
-    confidence = trip_confidence(trips) / (1 + np.square(stretch / _TRUSTED_STRETCH))
-    return np.clip(neighbour_means(source, confidence), 0, 1) * known
-
-
-def _trips(source: TriangleMesh, there: SurfacePoints, back: SurfacePoints, doubt: Floats | float) -> Floats:
-    """Say how far images may err, (n,), in sqrt(area): by ways there and back, or more."""
-    return np.maximum(round_trips(source, there, back) / np.sqrt(source.area), doubt)
-
-
 def assess_maps(
-    source: TriangleMesh,
-    target: TriangleMesh,
+    surfaces: tuple[TriangleMesh, TriangleMesh],
     there: SurfacePoints,
-    back: SurfacePoints,
+    judged: tuple[JudgedMap, JudgedMap],
     margin: float | None,
     *,
     likeness: float | None = None,
     in_place: float = 0.0,
-    doubt: Floats | float = 0.0,
 ) -> MatchQuality:
     """Measure a pair of maps between two surfaces.
 
     Parameters
     ----------
-    source, target : TriangleMesh
-        The surfaces.
-    there, back : SurfacePoints
-        A point of the target for each vertex of the source, and the other way round.
+    surfaces : pair of TriangleMesh
+        The source and the target.
+    there : SurfacePoints
+        A point of the target for each vertex of the source.
+    judged : pair of JudgedMap
+        What is known of the map there, and of the one back.
     margin : float or None
         How clear the choice of the map was.
     likeness : float, optional
         How credible the map was.
     in_place : float
         How probably it is right because it leaves everything where it stands.
-    doubt : (n,) array of float, optional
-        How far images may err, see `map_confidence`.
     """
+    (source, target), (known, known_back) = surfaces, judged
     orientation = SurfaceMap.from_points(target, there).orientation(source, target)
-    lengths = np.square(source.edge_lengths)
-    distortion = float(np.average(np.abs(_log_stretch(source, target, there)), weights=lengths))
-    coverage = float(np.average(with_partner(target, source, back, there), weights=target.vertex_areas))
-    known = with_partner(source, target, there, back)
-    source_coverage = float(np.average(known, weights=source.vertex_areas))
-    trips = _trips(source, there, back, doubt)
-    disagreement = float(np.average(trips, weights=source.vertex_areas))
-    confidence = float(np.average(_confidence(source, target, there, known, trips), weights=source.vertex_areas))
+    coverage = float(np.average(known_back.partnered, weights=target.vertex_areas))
+    source_coverage, disagreement, confidence = (
+        float(np.average(values, weights=source.vertex_areas))
+        for values in (known.partnered, known.errors, known.confidence)
+    )
     confidence *= max(orientation, 0.0) * probability_chosen(margin) * probability_right(likeness, in_place)
-    numbers = orientation, distortion, coverage, disagreement, margin, confidence
+    numbers = orientation, known.distortion, coverage, disagreement, margin, confidence
     return _worded(MatchQuality(*numbers, "", source_coverage, likeness, in_place=in_place))
 
 

@@ -13,7 +13,7 @@ from ...repair.clean_surface import CleanSurface
 from ...runtime.arrays import Floats
 from ...runtime.progress import Progress, Steps, within
 from ..missing_parts import round_trips
-from ..quality import map_confidence, trip_confidence
+from ..quality import trip_confidence
 from .component_maps import FollowedMap, follow_steps
 
 
@@ -52,8 +52,8 @@ def whole_maps_steps(
     there: SurfacePoints,
     back: SurfacePoints,
     *,
-    credibility: float = 1.0,
-    doubts: tuple[Floats | float, Floats | float] = (0.0, 0.0),
+    confidences: tuple[Floats, Floats],
+    credibility: float,
 ) -> Steps[WholeMaps]:
     """Extend maps of the main parts to all vertices of the meshes.
 
@@ -63,10 +63,10 @@ def whole_maps_steps(
         The meshes.
     there, back : SurfacePoints
         For each vertex of ``x.mesh`` a point of ``y.mesh``, and the other way round.
+    confidences : pair of arrays of float
+        How far the images of the vertices of ``x.mesh`` and of ``y.mesh`` may be trusted, see `JudgedMap`.
     credibility : float
-        How credible the maps are as a whole, see `map_confidence`.
-    doubts : pair of arrays of float, optional
-        How far the images of the vertices of ``x.mesh`` and of ``y.mesh`` may err, see `map_confidence`.
+        How credible the maps are as a whole, see `vertex_credibility`.
 
     Returns
     -------
@@ -79,15 +79,12 @@ def whole_maps_steps(
     anyhow, or onto the wrong one: it is trusted as far as the way there and back leads home.  What follows its
     surroundings is trusted as far as these are, and as it is near to them.
     """
-    main_there = map_confidence(x.mesh, y.mesh, there, back, credibility=credibility, doubt=doubts[0])
-    yield Progress(0.1, "Mapping every vertex")
-    main_back = map_confidence(y.mesh, x.mesh, back, there, credibility=credibility, doubt=doubts[1])
-    yield Progress(0.2, "Mapping every vertex")
-    forward = yield from within(follow_steps(x, y, there), 0.2, 0.6)
-    yield Progress(0.6, "Mapping every vertex")
-    backward = yield from within(follow_steps(y, x, back), 0.6, 1.0)
-    forth = _judged(x, forward, backward, main_there, credibility)
-    return WholeMaps(forth, _judged(y, backward, forward, main_back, credibility))
+    yield Progress(0.0, "Mapping every vertex")
+    forward = yield from within(follow_steps(x, y, there), 0.0, 0.5)
+    yield Progress(0.5, "Mapping every vertex")
+    backward = yield from within(follow_steps(y, x, back), 0.5, 1.0)
+    forth = _judged(x, forward, backward, credibility * confidences[0], credibility)
+    return WholeMaps(forth, _judged(y, backward, forward, credibility * confidences[1], credibility))
 
 
 def _judged(x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: Floats, credibility: float) -> WholeMap:

@@ -7,15 +7,21 @@ from scipy.spatial import cKDTree
 
 from engine import TriangleMesh
 from engine.dense.missing_parts import with_partner
-from engine.dense.quality import assess_maps, exchanged_sentence, map_confidence, overlap_sentence, with_pieces
+from engine.dense.quality import assess_maps, exchanged_sentence, judged_map, overlap_sentence, with_pieces
 from tests.bodies import mirrored_body
 from tests.engine.dense.test_missing_parts import at, cut_square, nearest_on, without_cap
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 
+def assessed(source, target, there, back, margin, *, doubt=0.0, **known):
+    """Assess a map there, which may err by a doubt, and one back."""
+    judged = judged_map(source, target, there, back, doubt), judged_map(target, source, back, there)
+    return assess_maps((source, target), there, judged, margin, **known)
+
+
 def by_index(source, target, margin=None):
     """Assess the map that keeps the indices."""
-    return assess_maps(source, target, at(target), at(source), margin)
+    return assessed(source, target, at(target), at(source), margin)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +50,7 @@ def test_the_identity_is_perfect(ball):
     assert quality.margin is None
     assert quality.confidence == pytest.approx(1)
     assert quality.sentence == "The shapes correspond closely."
-    np.testing.assert_allclose(map_confidence(ball, ball, at(ball), at(ball)), 1)
+    np.testing.assert_allclose(judged_map(ball, ball, at(ball), at(ball)).confidence, 1)
 
 
 def test_size_place_and_order_do_not_matter():
@@ -54,7 +60,7 @@ def test_size_place_and_order_do_not_matter():
     second = by_index(TriangleMesh(300 * source.vertices, source.triangles), turned, 1.5)
     vertices, triangles, new = permuted(source.vertices, source.triangles)
     shuffled, order = TriangleMesh(vertices, triangles), np.argsort(new)
-    third = assess_maps(shuffled, target, at(target, order), at(shuffled, new), 1.5)
+    third = assessed(shuffled, target, at(target, order), at(shuffled, new), 1.5)
     for other in (second, third):
         for name in ("distortion", "coverage", "disagreement", "confidence"):
             assert getattr(other, name) == pytest.approx(getattr(first, name), rel=1e-6, abs=1e-9)
@@ -93,7 +99,7 @@ def test_the_distortion_of_a_stretched_square(factor, square):
 
 def test_a_mirrored_map_is_not_to_be_trusted(symmetric):
     body, other = symmetric
-    quality = assess_maps(body, body, at(body, other), at(body, other), None)
+    quality = assessed(body, body, at(body, other), at(body, other), None)
     assert quality.orientation < -0.95
     assert quality.disagreement == pytest.approx(0, abs=1e-9)
     assert quality.distortion == pytest.approx(0, abs=1e-6)
@@ -103,7 +109,7 @@ def test_a_mirrored_map_is_not_to_be_trusted(symmetric):
 
 def test_a_half_that_is_not_reached_is_told(square):
     folded = nearest_on(square, square.vertices * [0.5, 1, 1])
-    quality = assess_maps(square, square, folded, nearest_on(square, np.minimum(square.vertices * [2, 1, 1], 1)), None)
+    quality = assessed(square, square, folded, nearest_on(square, np.minimum(square.vertices * [2, 1, 1], 1)), None)
     reach = 0.5 + 2 / 21  # what is at most two spacings away counts as reached
     assert quality.coverage == pytest.approx(reach, abs=0.06)
     assert f"Only {quality.coverage:.0%} of the target is reached" in quality.sentence
@@ -119,7 +125,7 @@ def test_a_small_part_that_the_other_lacks_does_not_sound_like_a_failure():
 
 def test_a_map_to_one_point_has_no_orientation_and_hardly_any_coverage(ball):
     point = at(ball, np.zeros(ball.vertex_count, int))
-    quality = assess_maps(ball, ball, point, point, None)
+    quality = assessed(ball, ball, point, point, None)
     assert quality.orientation == 0
     assert quality.coverage < 0.1
     assert quality.confidence == 0
@@ -141,7 +147,7 @@ def test_the_choice_of_the_map_counts(ball):
 def test_shapes_that_are_too_unlike_are_not_trusted(ball):
     """However well one is laid onto the other."""
     sure, even, unlike = (
-        assess_maps(ball, ball, at(ball), at(ball), None, likeness=likeness) for likeness in (25.0, 13.5, 10.0)
+        assessed(ball, ball, at(ball), at(ball), None, likeness=likeness) for likeness in (25.0, 13.5, 10.0)
     )
     assert sure.confidence == pytest.approx(1, abs=1e-6)
     assert sure.sentence == "The shapes correspond closely."
@@ -153,12 +159,12 @@ def test_shapes_that_are_too_unlike_are_not_trusted(ball):
 
 def test_the_worst_is_said_first(symmetric):
     body, other = symmetric
-    turned = assess_maps(body, body, at(body, other), at(body, other), 0.1)
+    turned = assessed(body, body, at(body, other), at(body, other), 0.1)
     assert "do not trust it" in turned.sentence
     point = at(body, np.zeros(body.vertex_count, int))
-    reached = assess_maps(body, body, at(body), point, 0.1)
+    reached = assessed(body, body, at(body), point, 0.1)
     assert "almost as likely" in reached.sentence
-    unlike = assess_maps(body, body, at(body), point, 0.1, likeness=5.0)
+    unlike = assessed(body, body, at(body), point, 0.1, likeness=5.0)
     assert "too little in common" in unlike.sentence
 
 
@@ -166,21 +172,16 @@ def test_the_worst_is_said_first(symmetric):
 def test_confidence_falls_with_the_distance_from_home(slide, square):
     """It is halved where there and back lead two hundredths of the surface's size away."""
     back = nearest_on(square, np.minimum(square.vertices + np.array([slide, 0, 0]), 1))
-    confidence = map_confidence(square, square, at(square), back)
+    confidence = judged_map(square, square, at(square), back).confidence
     inner = ((square.vertices > 0.15) & (square.vertices < 0.85))[:, :2].all(axis=1)
     np.testing.assert_allclose(confidence[inner], 1 / (1 + (slide / 0.02) ** 2), rtol=1e-6)
-    assert assess_maps(square, square, at(square), back, None).disagreement == pytest.approx(slide, rel=0.05, abs=1e-12)
-
-
-def test_no_vertex_is_trusted_more_than_the_map_as_a_whole(ball):
-    np.testing.assert_allclose(map_confidence(ball, ball, at(ball), at(ball)), 1)
-    np.testing.assert_allclose(map_confidence(ball, ball, at(ball), at(ball), credibility=0.3), 0.3)
+    assert assessed(square, square, at(square), back, None).disagreement == pytest.approx(slide, rel=0.05, abs=1e-12)
 
 
 def test_confidence_is_low_where_the_map_is_wrong_only(square):
     wrong = np.linalg.norm(square.vertices - [0.3, 0.7, 0], axis=1) < 0.12
     images = np.where(wrong, 0, np.arange(square.vertex_count))
-    confidence = map_confidence(square, square, at(square, images), at(square))
+    confidence = judged_map(square, square, at(square, images), at(square)).confidence
     assert confidence[wrong].max() < 0.5
     far = np.linalg.norm(square.vertices - [0.3, 0.7, 0], axis=1) > 0.3
     np.testing.assert_allclose(confidence[far], 1)
@@ -196,21 +197,21 @@ def test_edges_and_faces_without_size_do_no_harm():
     assert quality.orientation > 0.99
     assert quality.distortion == pytest.approx(0, abs=1e-12)
     assert quality.coverage == pytest.approx(1)
-    assert np.isfinite(map_confidence(mesh, mesh, at(mesh), at(mesh))).all()
+    assert np.isfinite(judged_map(mesh, mesh, at(mesh), at(mesh)).confidence).all()
 
 
 def test_what_is_doubted_otherwise_counts_if_it_is_more(ball):
     doubt = np.where(ball.vertices[:, 2] > 0, 0.02, 0.0)  # the length at which confidence is a half
-    confidence = map_confidence(ball, ball, at(ball), at(ball), doubt=doubt)
+    confidence = judged_map(ball, ball, at(ball), at(ball), doubt=doubt).confidence
     far = np.abs(ball.vertices[:, 2]) > 0.5
     np.testing.assert_allclose(confidence[far], np.where(doubt, 0.5, 1)[far])
-    quality = assess_maps(ball, ball, at(ball), at(ball), None, doubt=doubt)
+    quality = assessed(ball, ball, at(ball), at(ball), None, doubt=doubt)
     assert quality.disagreement == pytest.approx(0.01, rel=0.1)
     assert quality.confidence == pytest.approx(0.75, abs=0.03)
     there = at(ball, np.roll(np.arange(ball.vertex_count), 1))
     for doubt in (0.0, 1e-9):
-        assert assess_maps(ball, ball, there, at(ball), None, doubt=doubt).disagreement == pytest.approx(
-            assess_maps(ball, ball, there, at(ball), None).disagreement
+        assert assessed(ball, ball, there, at(ball), None, doubt=doubt).disagreement == pytest.approx(
+            assessed(ball, ball, there, at(ball), None).disagreement
         )
 
 
@@ -219,14 +220,14 @@ def test_what_the_target_lacks_is_told(square):
     half = cut_square(square)
     there, back = nearest_on(half, square.vertices), nearest_on(square, half.vertices)
     known = with_partner(square, half, there, back)
-    confidence = map_confidence(square, half, there, back)
+    confidence = judged_map(square, half, there, back).confidence
     assert (confidence[~known] == 0).all()
     assert confidence[known].min() > 0
-    quality = assess_maps(square, half, there, back, None)
+    quality = assessed(square, half, there, back, None)
     assert quality.source_coverage == pytest.approx(0.5 + 2 / 21, abs=0.06)  # up to two spacings
     assert quality.coverage == 1
     assert f"Only {quality.source_coverage:.0%} of the source has a partner" in quality.sentence
-    turned = assess_maps(half, square, back, there, None)
+    turned = assessed(half, square, back, there, None)
     assert (turned.coverage, turned.source_coverage) == (quality.source_coverage, 1)
     assert f"Only {turned.coverage:.0%} of the target is reached" in turned.sentence
 
@@ -236,10 +237,10 @@ def test_so_is_a_small_part():
     ball = TriangleMesh(*icosphere(16))
     rest, depth = without_cap(ball, 0.03)
     there, back = nearest_on(rest, ball.vertices), nearest_on(ball, rest.vertices)
-    quality = assess_maps(ball, rest, there, back, None)
+    quality = assessed(ball, rest, there, back, None)
     assert 0.98 < quality.source_coverage < 0.995
     assert f"a small part of the source ({1 - quality.source_coverage:.1%})" in quality.sentence
-    assert map_confidence(ball, rest, there, back)[depth.argmax()] == 0
+    assert judged_map(ball, rest, there, back).confidence[depth.argmax()] == 0
 
 
 def test_pieces_without_a_counterpart_are_mentioned_if_they_are_not_few(ball):

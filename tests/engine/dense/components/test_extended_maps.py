@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from engine import SurfacePoints, TriangleMesh, run
 from engine.dense.components.extended_maps import whole_maps_steps
-from engine.dense.quality import map_confidence
+from engine.dense.quality import judged_map
 from engine.repair.cleaning import clean
 from tests.messes import together
 from tests.shapes import icosphere
@@ -31,8 +31,15 @@ def mirrored(mesh):
     return SurfacePoints.at_vertices(mesh, cKDTree(mesh.vertices).query(mesh.vertices * [1, -1, 1])[1])
 
 
+def whole(x, y, there, back, credibility=1.0):
+    """Maps of all vertices, each trusted as what is known of it and the one back says."""
+    judged = judged_map(x.mesh, y.mesh, there, back), judged_map(y.mesh, x.mesh, back, there)
+    confidences = judged[0].confidence, judged[1].confidence
+    return run(whole_maps_steps(x, y, there, back, confidences=confidences, credibility=credibility))
+
+
 def maps(surface, there, back):
-    return run(whole_maps_steps(surface, surface, there(surface.mesh), back(surface.mesh)))
+    return whole(surface, surface, there(surface.mesh), back(surface.mesh))
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +50,8 @@ def with_eyes():
 def test_a_mesh_of_one_piece_is_trusted_as_its_map_is():
     surface = clean(TriangleMesh(*BODY))
     found = maps(surface, itself, mirrored)
-    known = map_confidence(surface.mesh, surface.mesh, itself(surface.mesh), mirrored(surface.mesh))
-    np.testing.assert_array_equal(found.there.confidence, known)
+    known = judged_map(surface.mesh, surface.mesh, itself(surface.mesh), mirrored(surface.mesh))
+    np.testing.assert_array_equal(found.there.confidence, known.confidence)
     assert found.there.share == found.back.share == 1
     assert found.there.alone == 0
 
@@ -72,15 +79,14 @@ def test_pieces_count_by_their_area(with_eyes):
     found = maps(with_eyes, itself, mirrored).there
     areas = with_eyes.original.vertex_areas
     main = with_eyes.vertex_parts == 0
-    whole = np.average(found.confidence, weights=areas)
-    assert found.share == pytest.approx(whole / np.average(found.confidence[main], weights=areas[main]))
+    of_all = np.average(found.confidence, weights=areas)
+    assert found.share == pytest.approx(of_all / np.average(found.confidence[main], weights=areas[main]))
     assert found.share != 1
 
 
 def test_what_has_no_partner_is_trusted_as_what_it_lies_on_is(with_eyes):
     bare = clean(TriangleMesh(*BODY))
-    steps = whole_maps_steps(with_eyes, bare, itself(with_eyes.mesh), itself(bare.mesh))
-    found = run(steps).there
+    found = whole(with_eyes, bare, itself(with_eyes.mesh), itself(bare.mesh)).there
     eyes = with_eyes.vertex_parts > 0
     assert found.alone > 0.01
     assert 0.05 < found.confidence[eyes].mean() < 0.95
@@ -88,8 +94,6 @@ def test_what_has_no_partner_is_trusted_as_what_it_lies_on_is(with_eyes):
 
 def test_what_the_map_as_a_whole_is_worth_counts_for_pieces_too(with_eyes):
     same = itself(with_eyes.mesh)
-    sure, doubtful = (
-        run(whole_maps_steps(with_eyes, with_eyes, same, same, credibility=part)).there for part in (1.0, 0.4)
-    )
+    sure, doubtful = (whole(with_eyes, with_eyes, same, same, part).there for part in (1.0, 0.4))
     np.testing.assert_allclose(doubtful.confidence, 0.4 * sure.confidence)
     assert doubtful.share == pytest.approx(sure.share)
