@@ -50,11 +50,10 @@ class HIERMATCH_OT_test_poses(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Make them, or take them away."""
-        scene = cast("bpy.types.Scene", context.scene)
         try:
             armature = meant_armature(context, self.target)
             if self.remove or is_exercising(armature):
-                end_exercise(scene, armature)
+                end_exercise(armature)
                 self.report({"INFO"}, translated(f'The test poses of "{armature.name}" are gone'))
                 return {"FINISHED"}
             bones = bending_bones(armature)
@@ -63,7 +62,7 @@ class HIERMATCH_OT_test_poses(bpy.types.Operator):
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
-        last = begin_exercise(scene, armature, bones)
+        last = begin_exercise(cast("bpy.types.Scene", context.scene), armature, bones)
         joints = counted(len(bones), "bone")
         self.report(
             {"INFO"},

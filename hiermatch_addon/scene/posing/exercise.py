@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import math
 from typing import TYPE_CHECKING, Any, Final, cast
+from uuid import uuid4
 
 import bpy
 from mathutils import Matrix
@@ -21,8 +22,8 @@ __all__ = ["begin_exercise", "bending_bones", "end_exercise", "is_exercising"]
 
 _WHY: Final = "test poses"
 
-_SCENE: Final = "hiermatch_test_poses"
-"""Custom property of the armature: what was changed on the scene, as a JSON text."""
+_STATE: Final = "hiermatch_test_poses"
+"""Custom property, a JSON text: of an armature its markers, of a scene its frames before, of both what joins them."""
 
 _ACTION: Final = "hiermatch_test_action"
 """Custom property of the armature: the action, as a pointer that follows renaming."""
@@ -88,36 +89,68 @@ def begin_exercise(scene: bpy.types.Scene, armature: bpy.types.Object, bones: It
             bone.matrix_basis = turn or Matrix()
             bone.keyframe_insert(channel, frame=frame + number * _BEAT, group=name)
         marker = scene.timeline_markers.new(name, frame=frame + _BEAT)
-        markers.append(marker.name)
+        markers.append((marker.name, marker.frame))
         frame += (len(turns) - 1) * _BEAT
     owner: Any = armature
-    owner[_SCENE] = json.dumps(
-        {
-            "markers": markers,
-            "range": [scene.frame_start, scene.frame_end],
-            "frame": scene.frame_current,
-        }
-    )
+    owner[_STATE] = json.dumps({"scene": _lend(scene, frame), "markers": markers})
     owner[_ACTION] = action
-    scene.frame_start, scene.frame_end = 1, frame
     scene.frame_set(1)
     return frame
 
 
-def end_exercise(scene: bpy.types.Scene, armature: bpy.types.Object) -> None:
-    """Take the test poses away, and bring back what was before."""
+def end_exercise(armature: bpy.types.Object) -> None:
+    """Take the test poses away, and bring back what was before, in whatever scene they were begun."""
     owner: Any = armature
-    state = json.loads(owner.get(_SCENE, "{}"))
+    state = _state_of(armature)
     bring_back(armature)
-    if state:
-        action = owner.get(_ACTION)
-        if _ACTION in owner:
-            del owner[_ACTION]
-        if action is not None:
-            bpy.data.actions.remove(action)
-        ours = set(state["markers"])
-        for marker in [marker for marker in scene.timeline_markers if marker.name in ours]:
-            scene.timeline_markers.remove(marker)
-        scene.frame_start, scene.frame_end = state["range"]
-        scene.frame_set(state["frame"])
-        del owner[_SCENE]
+    if not state:
+        return
+    action = owner.get(_ACTION)
+    if action is not None:
+        bpy.data.actions.remove(action)
+    for name in (_STATE, _ACTION):
+        if name in owner:
+            del owner[name]
+    for scene in bpy.data.scenes:
+        if _state_of(scene).get("scene") == state["scene"]:
+            _give_back(scene, state["markers"])
+
+
+def _lend(scene: bpy.types.Scene, last: int) -> str:
+    """Let a scene play the frames up to the last one of a rig; return by what its state is known, kept on the scene.
+
+    Markers cannot be marked as ours, nor can the rig point to the scene: who links the rig would link that as well.
+    """
+    state = _state_of(scene)
+    if state:  # other rigs play there, too
+        last = max(last, scene.frame_end)
+    else:
+        state = {
+            "scene": uuid4().hex,
+            "range": [scene.frame_start, scene.frame_end],
+            "preview": scene.use_preview_range,
+            "frame": scene.frame_current,
+        }
+        cast("Any", scene)[_STATE] = json.dumps(state)
+    scene.frame_start, scene.frame_end, scene.use_preview_range = 1, last, False
+    return state["scene"]
+
+
+def _give_back(scene: bpy.types.Scene, markers: list[list[Any]]) -> None:
+    """Take the markers of a rig away, and if it was the last one that plays there, bring back the scene's frames."""
+    for ours in markers:
+        same = [marker for marker in scene.timeline_markers if [marker.name, marker.frame] == ours]
+        if same:
+            scene.timeline_markers.remove(same[-1])  # the one before is the user's own, or another rig's
+    state = _state_of(scene)
+    if any(_state_of(obj).get("scene") == state["scene"] for obj in bpy.data.objects):
+        return
+    scene.frame_start, scene.frame_end = state["range"]
+    scene.use_preview_range = state["preview"]
+    scene.frame_set(state["frame"])
+    del cast("Any", scene)[_STATE]
+
+
+def _state_of(owner: bpy.types.Object | bpy.types.Scene) -> dict[str, Any]:
+    """Return what is kept on a scene or an armature while test poses are there."""
+    return json.loads(cast("Any", owner).get(_STATE, "{}"))

@@ -24,10 +24,11 @@ def state(armature):
         "action": animation.action.name if animation and animation.action else "",
         "nla": animation.use_nla if animation else True,
         "markers": [(marker.name, marker.frame) for marker in scene.timeline_markers],
-        "frames": (scene.frame_start, scene.frame_end, scene.frame_current),
+        "frames": (scene.frame_start, scene.frame_end, scene.frame_current, scene.use_preview_range),
         "pose": [tuple(map(tuple, bone.matrix_basis)) for bone in armature.pose.bones],
         "muted": [one.mute for bone in armature.pose.bones for one in bone.constraints],
         "keys": sorted(armature.keys()),
+        "kept": [name for name in scene.keys() if name.startswith("hiermatch_test")],  # noqa: SIM118 - not a dict
     }
 
 
@@ -37,7 +38,8 @@ def rigged():
     armature.animation_data_create().action = bpy.data.actions.new("Walk")
     pose(armature, 0.3)
     armature.pose.bones["head"].constraints.new("COPY_ROTATION").target = obj
-    bpy.context.scene.timeline_markers.new("Jump", frame=7)
+    for name, frame in (("Jump", 7), ("neck", 77)):  # the latter as a bone is called
+        bpy.context.scene.timeline_markers.new(name, frame=frame)
     bpy.context.scene.frame_set(5)
     return obj, armature
 
@@ -46,7 +48,7 @@ def test_every_joint_is_bent_alone_left_and_right_apart(rigged):
     obj, armature = rigged
     assert bpy.ops.hiermatch.test_poses(target=obj.name) == {"FINISHED"}
     scene = bpy.context.scene
-    markers = {marker.name: marker.frame for marker in scene.timeline_markers if marker.name != "Jump"}
+    markers = {marker.name: marker.frame for marker in scene.timeline_markers if marker.frame not in {7, 77}}
     assert set(markers) == DEFORMING
     assert len(set(markers.values())) == len(DEFORMING)
     scene.frame_set(scene.frame_start)
@@ -71,6 +73,48 @@ def test_pressed_again_it_leaves_nothing_behind(rigged, options):
     assert state(armature) == before
 
 
+@pytest.mark.parametrize("first", ["Source", "Other"])
+def test_two_rigs_that_end_one_after_the_other_leave_nothing_behind(rigged, first):
+    obj, armature = rigged
+    other, _ = add_rigged("Other")
+    before, scene = state(armature), bpy.context.scene
+    for name in (obj.name, other.name):
+        bpy.ops.hiermatch.test_poses(target=name)
+    last, both = scene.frame_end, len(scene.timeline_markers)
+    assert bpy.ops.hiermatch.test_poses(target=first) == {"FINISHED"}
+    assert scene.frame_end == last
+    assert both - len(scene.timeline_markers) == len(DEFORMING)
+    bpy.ops.hiermatch.test_poses(target=obj.name if first == other.name else other.name)
+    assert state(armature) == before
+
+
+def test_a_scene_gets_its_own_frames_back_whichever_is_shown(rigged):
+    obj, armature = rigged
+    scene = bpy.context.scene
+    before, other = state(armature), bpy.data.scenes.new("Other")
+    other.frame_end = 500
+    other.collection.objects.link(obj)
+    other.collection.objects.link(armature)
+    bpy.ops.hiermatch.test_poses(target=obj.name)
+    scene.name = "Renamed"
+    with bpy.context.temp_override(scene=other, view_layer=other.view_layers[0]):
+        assert bpy.ops.hiermatch.test_poses(target=obj.name) == {"FINISHED"}
+    assert state(armature) == before
+    assert (other.frame_start, other.frame_end) == (1, 500)
+
+
+def test_all_frames_are_played_in_spite_of_a_preview_range(rigged):
+    obj, armature = rigged
+    scene = bpy.context.scene
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 100, 110
+    before = state(armature)
+    bpy.ops.hiermatch.test_poses(target=obj.name)
+    assert not scene.use_preview_range
+    bpy.ops.hiermatch.test_poses(target=obj.name)
+    assert state(armature) == before
+    assert (scene.frame_preview_start, scene.frame_preview_end) == (100, 110)
+
+
 def test_to_remove_what_is_not_there_changes_nothing(rigged):
     _, armature = rigged
     before = state(armature)
@@ -89,7 +133,7 @@ def test_bones_and_action_that_are_gone_meanwhile_are_no_matter(rigged):
     bpy.ops.object.mode_set(mode="OBJECT")
     assert bpy.ops.hiermatch.test_poses(target=obj.name) == {"FINISHED"}
     assert not bpy.data.actions
-    assert [marker.name for marker in bpy.context.scene.timeline_markers] == ["Jump"]
+    assert [marker.name for marker in bpy.context.scene.timeline_markers] == ["Jump", "neck"]
 
 
 def test_a_strip_that_is_tweaked_is_tweaked_again(rigged):
