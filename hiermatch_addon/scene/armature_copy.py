@@ -12,7 +12,7 @@ import numpy as np
 
 from ..common.access import view_layer_of
 from .armatures import armature_of
-from .rest_action import forget_poses
+from .posing.pose_state import bring_back
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -83,7 +83,8 @@ def _copied(context: bpy.types.Context, source: bpy.types.Object, name: str) -> 
     copy.name = data.name = name
     copy.parent = None
     copy.constraints.clear()
-    forget_poses(copy)
+    bring_back(copy)
+    _forget(copy)
     _stop_animation(copy)
     _stop_animation(data)
     cast("bpy.types.Scene", context.scene).collection.objects.link(copy)
@@ -94,6 +95,13 @@ def _copied(context: bpy.types.Context, source: bpy.types.Object, name: str) -> 
     copy.hide_set(state=False)
     copy.select_set(state=False)
     return copy
+
+
+def _forget(copy: bpy.types.Object) -> None:
+    """Let a copy have nothing to do with what is kept for the other one: poses, a successor, test poses."""
+    owner: Any = copy
+    for name in [name for name in owner.keys() if name.startswith("hiermatch_")]:  # noqa: SIM118 - not a dict
+        del owner[name]
 
 
 def repoint(armature: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID]) -> list[str]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["AS_IT_WAS", "forget_poses", "keep_pose", "kept_pose", "pose_bases", "was_kept"]
+__all__ = ["AS_IT_WAS", "keep_pose", "kept_pose", "pose_bases", "was_kept"]
 
 _MARKER = "hiermatch_rest"
 """Custom property of the actions that were made here: the name of the armature they were made for."""
@@ -81,13 +81,6 @@ def kept_pose(armature: bpy.types.Object, kind: str = "") -> bpy.types.Action | 
 def was_kept(armature: bpy.types.Object, kind: str = "") -> bool:
     """Tell whether a pose of a kind was kept for an armature, also if the action is gone by now."""
     return _property(kind) in cast("Any", armature) or kept_pose(armature, kind) is not None
-
-
-def forget_poses(armature: bpy.types.Object) -> None:
-    """Let an armature object that was copied have nothing to do with the poses of the other one."""
-    owner: Any = armature
-    for name in [name for name in owner.keys() if name.startswith(_KEPT)]:  # noqa: SIM118 - not a dict
-        del owner[name]
 
 
 def keep_pose(

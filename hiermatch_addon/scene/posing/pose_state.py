@@ -7,11 +7,12 @@ import json
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from ..armatures import armature_of
+from ..motion.action_curves import played_action
 
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["bring_back", "is_aside", "put_aside"]
+__all__ = ["bring_back", "is_aside", "own_action", "put_aside"]
 
 _STATE: Final = "hiermatch_pose_aside"
 """Custom property of the armature: what was put aside, as a JSON text."""
@@ -25,6 +26,12 @@ _CHANNELS: Final = ("location", "rotation_quaternion", "rotation_euler", "rotati
 def is_aside(armature: bpy.types.Object, why: str) -> bool:
     """Tell whether the pose of an armature was put aside for a purpose."""
     return json.loads(cast("Any", armature).get(_STATE, "{}")).get("why") == why
+
+
+def own_action(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """Return the action that an armature plays, or will play again once its pose is brought back; None for none."""
+    owner: Any = armature
+    return owner.get(_ACTION) if _STATE in owner else played_action(armature)
 
 
 def put_aside(armature: bpy.types.Object, why: str) -> None:

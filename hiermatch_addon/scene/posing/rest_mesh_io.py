@@ -12,6 +12,7 @@ from ....engine import unposed
 from ...common.access import mesh_of
 from ..armatures import moving_armatures
 from ..character import parts_of, vertex_ranges
+from .pose_state import own_action
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,11 +27,10 @@ __all__ = ["bring_to_rest", "plays_actions", "why_not_to_rest"]
 
 
 def plays_actions(armature: bpy.types.Object) -> bool:
-    """Tell whether an armature has an action, or strips of some."""
+    """Tell whether an armature has an action of its own, or strips of some."""
     animation = armature.animation_data
-    if animation is None:
-        return False
-    return animation.action is not None or any(len(track.strips) for track in animation.nla_tracks)
+    tracks = animation.nla_tracks if animation is not None else ()
+    return own_action(armature) is not None or any(len(track.strips) for track in tracks)
 
 
 def why_not_to_rest(side: Side, armature: bpy.types.Object, weights: csr_array) -> str:

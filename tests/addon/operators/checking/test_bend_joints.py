@@ -6,9 +6,11 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.scene.posing.exercise import is_exercising
+from hiermatch.hiermatch_addon.scene.posing.rest_mesh_io import plays_actions
 
-from tests.addon.operators.carrying.test_fit_rig import shown
-from tests.addon.rigs import CONTROLS, add_rigged, pose
+from tests.addon.operators.carrying.test_fit_rig import add_weights, fit, shown
+from tests.addon.rigs import CONTROLS, add_rigged, add_target, pose
 from tests.addon.scenes import add_blob
 from tests.skeletons import CREATURE_BONES
 
@@ -113,6 +115,24 @@ def test_all_frames_are_played_in_spite_of_a_preview_range(rigged):
     bpy.ops.hiermatch.test_poses(target=obj.name)
     assert state(armature) == before
     assert (scene.frame_preview_start, scene.frame_preview_end) == (100, 110)
+
+
+def test_a_rig_that_is_made_meanwhile_has_nothing_of_them(rigged):
+    obj, armature = rigged
+    armature.animation_data.action = None
+    target, _ = add_target(obj)
+    add_weights(obj, target)
+    before = state(armature)
+    bpy.ops.hiermatch.test_poses(target=obj.name)
+    assert not plays_actions(armature)
+    made, _ = fit(obj, target)
+    assert not made.pose.bones["head"].constraints[0].mute
+    assert {name for name in made.keys() if name.startswith("hiermatch")} == {"hiermatch_rig_of"}  # noqa: SIM118
+    bpy.ops.hiermatch.test_poses(target=target.name)
+    bpy.ops.hiermatch.test_poses(target=target.name)
+    assert is_exercising(armature)
+    bpy.ops.hiermatch.test_poses(target=obj.name)
+    assert state(armature) == before
 
 
 def test_to_remove_what_is_not_there_changes_nothing(rigged):
