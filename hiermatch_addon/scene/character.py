@@ -135,8 +135,14 @@ def armatures_above(obj: bpy.types.Object) -> set[bpy.types.Object]:
 
 
 def take_place(other: bpy.types.Object, armature: bpy.types.Object) -> None:
-    """Record that an armature moves a character in the place of another one, so that either means this character."""
-    cast("Any", other)[_SUCCESSOR] = armature
+    """Record that an armature moves a character in the place of another one, so that either means this character.
+
+    So do those in whose place that other one had come.
+    """
+    for owner in cast("Any", bpy.data.objects):
+        if other in (owner, owner.get(_SUCCESSOR)):
+            owner[_SUCCESSOR] = armature
+    cast("Any", armature).pop(_SUCCESSOR, None)  # one that comes back
 
 
 def successor(armature: bpy.types.Object) -> bpy.types.Object:

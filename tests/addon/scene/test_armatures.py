@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from __future__ import annotations
 
+from itertools import pairwise
+
 import bpy
 import numpy as np
+import pytest
 from hiermatch.hiermatch_addon.scene.armatures import (
     bone_weights,
     find_armature,
@@ -12,7 +15,7 @@ from hiermatch.hiermatch_addon.scene.armatures import (
     without_held,
 )
 from hiermatch.hiermatch_addon.scene.binding import bind, unbind
-from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
+from hiermatch.hiermatch_addon.scene.character import parts_of, side_of, successor, take_place
 from mathutils import Matrix
 
 from tests.addon.characters import add_person
@@ -53,6 +56,23 @@ def test_an_armature_that_was_replaced_means_the_one_in_its_place():
     bind(side, new, side, [])
     assert unbind(side, new, []) == [old]
     assert find_armature(side_of(old, bpy.context.view_layer)) == new
+
+
+@pytest.mark.parametrize("deleted", [False, True])
+def test_an_armature_that_was_replaced_twice_means_the_last_one(deleted):
+    old = add_person("Old")[0]
+    side = side_of(old, bpy.context.view_layer)
+    rigs = [old, old.copy(), old.copy()]
+    for before, after in pairwise(rigs):
+        bpy.context.scene.collection.objects.link(after)
+        bind(side, after, side, [])
+        assert unbind(side, after, []) == [before]
+    assert [successor(rig) for rig in rigs] == [rigs[2]] * 3
+    if deleted:
+        bpy.data.objects.remove(rigs.pop(1))
+    assert find_armature(side_of(old, bpy.context.view_layer)) == rigs[-1]
+    take_place(rigs[-1], old)  # its modifiers were switched on again
+    assert {successor(rig) for rig in rigs} == {old}
 
 
 def test_a_rig_is_read_as_it_was_made():
