@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 from .action_curves import slot_for
@@ -88,7 +89,8 @@ def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mappin
         copy.name = track.name
         for strip in strips:
             action = made[strip.action.name]  # type: ignore[union-attr]
-            new = copy.strips.new(strip.name, int(strip.frame_start), action)
+            free = max([strip.frame_start, *(one.frame_end for one in copy.strips)])
+            new = copy.strips.new(strip.name, ceil(free), action)  # which can be done at whole frames only
             slot = slot_for(action, target)
             if slot is not None:
                 new.action_slot = slot

@@ -178,6 +178,20 @@ def test_all_actions_go_to_several_targets_and_strips_are_copied():
         assert (copy.frame_start, copy.repeat) == (30, 2)
 
 
+def test_strips_that_meet_between_two_frames_are_copied():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    strips = source.animation_data.nla_tracks.new().strips
+    strips.new("First", 1, action).frame_end = 10.5
+    strips.new("Second", 11, action).frame_start = 10.5
+    assert carry(source="A", target="B", action="Wave", strips=True) == {"FINISHED"}
+    (track,) = target.animation_data.nla_tracks
+    assert [(one.frame_start, one.frame_end) for one in track.strips] == [
+        (one.frame_start, one.frame_end) for one in strips
+    ]
+
+
 def test_a_rig_that_is_named_twice_gets_an_action_once():
     source, _ = add_person("A")
     add_person("B", "renamed")
