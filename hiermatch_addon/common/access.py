@@ -9,9 +9,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, cast
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import bpy
 
-__all__ = ["layout_of", "mesh_of", "view_layer_of", "window_manager_of"]
+__all__ = ["layout_of", "mesh_of", "open_collections", "view_layer_of", "window_manager_of"]
 
 
 def view_layer_of(context: bpy.types.Context) -> bpy.types.ViewLayer:
@@ -22,6 +24,17 @@ def view_layer_of(context: bpy.types.Context) -> bpy.types.ViewLayer:
 def window_manager_of(context: bpy.types.Context) -> bpy.types.WindowManager:
     """Return the window manager."""
     return cast("bpy.types.WindowManager", context.window_manager)
+
+
+def open_collections(
+    context: bpy.types.Context, collections: Iterable[bpy.types.Collection]
+) -> list[bpy.types.Collection]:
+    """Return those of some collections that objects can be put into; if there are none, the scene's own.
+
+    Those of other files and overrides of such are closed, also if what is in them was made local.
+    """
+    found = [one for one in collections if one.library is None and one.override_library is None]
+    return found or [cast("bpy.types.Scene", context.scene).collection]
 
 
 def layout_of(owner: bpy.types.Panel | bpy.types.Menu | bpy.types.Operator) -> bpy.types.UILayout:

@@ -18,7 +18,7 @@ from mathutils import Euler, Matrix, Vector
 from mathutils.bvhtree import BVHTree
 from mathutils.interpolate import poly_3d_calc
 
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import mesh_of, open_collections, view_layer_of
 from .demo_cat import add_modifier, build_body
 from .demo_rig import rig_cat
 from .demo_skeleton import BONES, STANDING, WALKING, bone_weights, build_armature, set_pose
@@ -139,7 +139,7 @@ def _show(context: bpy.types.Context, source: bpy.types.Object, target: bpy.type
     scene: Any = context.scene
     view = context.space_data
     for cat in (source, target):
-        cast("bpy.types.Collection", context.collection).objects.link(cat)
+        open_collections(context, [cast("bpy.types.Collection", context.collection)])[0].objects.link(cat)
         cat.select_set(state=True)
         if isinstance(view, bpy.types.SpaceView3D) and view.local_view:
             cat.local_view_set(view, state=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 import numpy as np
 
-from ..common.access import mesh_of, view_layer_of
+from ..common.access import mesh_of, open_collections, view_layer_of
 from .demo_skeleton import BONES, STANDING, set_pose
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def _armature(
     """Make the armature, with its joints where the pose has taken them."""
     bones = bpy.data.armatures.new(RIG_NAME)
     armature = bpy.data.objects.new(RIG_NAME, bones)
-    cast("bpy.types.Collection", context.collection).objects.link(armature)
+    open_collections(context, [cast("bpy.types.Collection", context.collection)])[0].objects.link(armature)
     armature.matrix_world = cat.matrix_world.copy()
     bones.display_type = "STICK"
     armature.show_in_front = True

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 import numpy as np
 
-from ..common.access import view_layer_of
+from ..common.access import open_collections, view_layer_of
 from .armatures import armature_of
 from .posing.pose_state import bring_back
 
@@ -58,11 +58,11 @@ def copy_to(
     matrix.translation = target.matrix_world.translation
     armature.matrix_world = matrix
     scene = cast("bpy.types.Scene", context.scene).collection
-    wanted = tuple(target.users_collection)
+    wanted = open_collections(context, target.users_collection)
     for collection in wanted:
         if armature.name not in collection.objects:
             collection.objects.link(armature)
-    if wanted and scene not in wanted:
+    if scene not in wanted:
         scene.objects.unlink(armature)
     view_layer_of(context).update()
     return armature

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from ...engine import Progress, called_steps, in_between, kept_in_place, turned_normals, within, wrap_steps
-from ..common.access import mesh_of
+from ..common.access import mesh_of, open_collections
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.attribute_io import read_corner_normals, write_corner_normals
 from ..scene.binding import hand_over
@@ -199,8 +199,7 @@ def _duplicate(context: bpy.types.Context, obj: bpy.types.Object, name: str) -> 
         copy.shape_key_clear()
     for prefix in writing.prefixes(copy):
         writing.clear(copy, prefix)
-    collections = obj.users_collection or (cast("bpy.types.Scene", context.scene).collection,)
-    for collection in collections:
+    for collection in open_collections(context, obj.users_collection):
         collection.objects.link(copy)
     return copy
 

@@ -88,6 +88,27 @@ def add_symmetric_pair():
     return source, target
 
 
+def localised(obj, folder):
+    """Put an object into a collection of another file, override that here, and make the object local in it."""
+    name, hero = obj.name, bpy.data.collections.new("Hero")
+    hero.objects.link(obj)
+    path = str(folder / "hero.blend")
+    bpy.data.libraries.write(path, {hero})
+    bpy.data.batch_remove([obj.data, hero])
+    with bpy.data.libraries.load(path, link=True) as (_, here):
+        here.collections = ["Hero"]
+    layer = bpy.context.view_layer
+    here.collections[0].override_hierarchy_create(bpy.context.scene, layer, do_fully_editable=True)
+    layer.update()
+    layer.objects[name].select_set(state=True)
+    bpy.ops.object.make_local(type="SELECT_OBDATA")
+    made = layer.objects[name]
+    made.select_set(state=False)
+    assert made.override_library is None
+    assert [collection.override_library is None for collection in made.users_collection] == [False]
+    return made
+
+
 def made_up_result(source_mesh, target_mesh, points=5, seed=1):
     """Make a result of random points, with straight-line distances."""
     random = np.random.default_rng(seed)

@@ -307,6 +307,20 @@ def test_failure_leaves_nothing_behind(monkeypatch):
     assert snapshot() == before
 
 
+@pytest.mark.parametrize("rigged", [False, True])
+def test_where_nothing_can_be_put_they_stand_in_the_scene(tmp_path, rigged):
+    path, scene = str(tmp_path / "set.blend"), bpy.context.scene
+    bpy.data.libraries.write(path, {bpy.data.collections.new("Set")})
+    with bpy.data.libraries.load(path, link=True) as (_, here):
+        here.collections = ["Set"]
+    scene.collection.children.link(here.collections[0])
+    layer = bpy.context.view_layer
+    layer.active_layer_collection = layer.layer_collection.children[-1]
+    assert bpy.context.collection == here.collections[0]
+    assert bpy.ops.hiermatch.add_demo_pair(**SMALL, rigged=rigged) == {"FINISHED"}
+    assert len(scene.collection.objects) == 2 + rigged
+
+
 def test_not_in_edit_mode():
     bpy.ops.mesh.primitive_cube_add()
     bpy.ops.object.mode_set(mode="EDIT")

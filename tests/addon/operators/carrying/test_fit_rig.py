@@ -18,7 +18,7 @@ from mathutils import Matrix
 
 from tests.addon.rigs import CONTROLS, POSE, add_mesh, add_rigged, add_target, pose, true_passage
 from tests.addon.scene.test_armatures import IMPORTED
-from tests.addon.scenes import add_blob
+from tests.addon.scenes import add_blob, localised
 
 MIRRORED = Matrix.Translation((4, 0, 0)) @ Matrix.Scale(-1, 4, (0, 1, 0))
 TURNED = Matrix.Translation((3, 1, 0)) @ Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2, 4)
@@ -407,6 +407,14 @@ def test_the_new_rig_takes_the_place_of_the_target_s_own():
     assert not other.visible_get()
     assert meant_armature(bpy.context, "Other Rig") == made  # what is picked in the panel still means the target
     assert side_of(other, bpy.context.view_layer) == target
+
+
+def test_the_rig_of_a_target_in_an_overridden_collection_is_put_beside_it(tmp_path):
+    source, _ = add_rigged()
+    target, joints = add_target(source)
+    made, _ = fit(source, localised(target, tmp_path))
+    assert list(made.users_collection) == [bpy.context.scene.collection]
+    assert missed(made, joints) < 0.02
 
 
 def test_an_own_rig_that_moves_more_than_the_target_stays_in_view():

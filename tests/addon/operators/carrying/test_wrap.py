@@ -10,7 +10,7 @@ from hiermatch.hiermatch_addon.transfers.wrap import wrap_key_name
 from scipy.spatial import cKDTree
 
 from tests.addon.characters import add_person, match_at_once
-from tests.addon.scenes import mesh_snapshot
+from tests.addon.scenes import localised, mesh_snapshot
 from tests.addon.shape_keys import positions
 
 
@@ -178,6 +178,13 @@ def seam_of(parts):
         normals.append(np.array([mesh.corner_normals[corner[number]].vector for number in chosen]))
     cosines = np.einsum("nd,nd->n", *normals).clip(-1, 1)
     return np.linalg.norm(np.subtract(*places), axis=1), np.degrees(np.arccos(cosines))
+
+
+def test_a_new_object_of_one_in_an_overridden_collection_is_put_beside_it(pair, tmp_path):
+    source = localised(pair[0], tmp_path)
+    assert wrap(wrap_result="OBJECT") == {"FINISHED"}
+    assert source.data.shape_keys is None
+    assert list(bpy.data.objects["Source to Target"].users_collection) == [bpy.context.scene.collection]
 
 
 @pytest.mark.parametrize("result", ["KEY", "OBJECT"])
