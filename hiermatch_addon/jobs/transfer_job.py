@@ -14,6 +14,7 @@ from ..properties.preferences import shape_memory
 from ..scene.armatures import armature_of, find_armature, read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, whole
 from ..scene.pair import check_pair, check_side, is_own
+from ..scene.posing.before_after import show_after
 from ..storage.halves import find_common
 from ..storage.linked_matches import keep_linked, kept_linked
 from ..storage.stored_map import find_maps, keep_refined
@@ -268,6 +269,8 @@ class TransferJob(SteppedJob):
             transfer.check()
         carried = []
         for leg, target in zip(self._legs, targets, strict=True):
+            if self._writes:
+                show_after(target)  # else what is switched on again now would be so once more later
             outcome = self._write_match(context, leg, source, target)
             reports = (*(transfer.write(context, source, target) for transfer in leg.transfers), *leg.left_out)
             carried.append(Carried(target.name, outcome, reports, time.perf_counter() - self._start, leg.verdict))

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.scene.posing.before_after import is_before
 
 from tests.addon.operators.carrying.test_fit_rig import add_weights, shown
 from tests.addon.operators.carrying.test_fit_rig import fit as fit_rig
@@ -40,6 +41,20 @@ def test_there_and_back(like_source):
     bpy.context.scene.frame_set(1)
     np.testing.assert_allclose(shown(target), now, atol=1e-5)
     assert not [name for name in (*target.keys(), *made.keys()) if name.startswith("hiermatch_before")]
+
+
+def test_what_is_carried_again_is_shown_as_it_is(dense_pair):
+    source, target = dense_pair
+    for name in ("Basis", "Swell"):
+        source.shape_key_add(name=name).data[0].co.z += 0.5
+    for _ in range(2):
+        assert bpy.ops.hiermatch.transfer_shape_keys(source="Source", target="Target") == {"FINISHED"}
+        key = target.data.shape_keys.key_blocks["Swell"]
+        assert not is_before(target)
+        assert not key.mute
+        assert bpy.ops.hiermatch.before_after() == {"FINISHED"}
+        assert is_before(target)
+        assert key.mute
 
 
 def test_what_got_nothing_has_no_before():
