@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import bpy
 
+from ..common.access import view_layer_of
 from ..jobs.match_job import job_options
 from ..jobs.transfer_job import TransferJob, TransferOptions
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
 from ..properties.summary import remember
+from ..scene.pair import name_of
 from ..transfers.options.retarget import chosen_transfers
 from ..transfers.retarget_properties import remember_transfer
 from .command import EXIT_CODES
@@ -132,7 +134,8 @@ def run_transfers(
             names = (outcome.source, outcome.target)
             remember(state_of(context).summary, outcome.stored, names, matching.prefix, outcome.seconds)
         refresh(cast("bpy.types.Scene", context.scene))
-        remember_transfer(context, source.name, carried)
+        layer = view_layer_of(context)
+        remember_transfer(context, (name_of(layer, source), name_of(layer, target)), carried)
         report.add_carried(carried)
         prefix = options.prefix if outcome is None else matching.prefix
         if finish is not None:

@@ -74,10 +74,24 @@ def copy_named(source: object, target: object, names: Iterable[str]) -> None:
         setattr(target, name, getattr(source, name))
 
 
-def remember_transfer(context: bpy.types.Context, source: str, carried: list[Carried], left_out: str = "") -> None:
-    """Fill the report of what was carried from a source; `left_out` says which selected meshes were no targets."""
+def remember_transfer(
+    context: bpy.types.Context, names: tuple[str, str], carried: list[Carried], left_out: str = ""
+) -> None:
+    """Fill the report of what was carried.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        Where it was.
+    names : (str, str)
+        By what the source and the last target are found again, see `name_of`.
+    carried : list of Carried
+        What became of all targets.
+    left_out : str
+        Which selected meshes were no targets, as a sentence.
+    """
     report: Any = retarget_of(context).report
-    report.source, report.target = source, carried[-1].target if carried else ""
+    report.source, report.target = names
     done = []
     for one in carried:
         what = [part.done for part in one.reports if part.done]

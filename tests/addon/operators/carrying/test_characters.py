@@ -11,6 +11,7 @@ from hiermatch.hiermatch_addon.scene.armatures import find_armature
 from hiermatch.hiermatch_addon.scene.character import parts_of, positions_of, read_surface, topology_of
 from hiermatch.hiermatch_addon.scene.deform_layer import read_weights
 from hiermatch.hiermatch_addon.scene.pair import named_side
+from hiermatch.hiermatch_addon.scene.posing.before_after import is_before
 from hiermatch.hiermatch_addon.storage.halves import find_common, find_half
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, find_landmarks
 from hiermatch.hiermatch_addon.storage.match_exchange import apply_match, collect_match
@@ -148,6 +149,13 @@ class TestRetarget:
         assert {find_armature(obj) for obj in targets} == {armature}
         assert find_common(side(SOURCE), side(TARGET))[0][0].key == key
         assert bpy.context.scene.hiermatch_retarget.report.done.startswith(f'Carried to "{TARGET}"')
+
+    def test_named_part_by_part_it_is_shown_as_it_was_as_a_whole(self, targets):
+        name = " + ".join(obj.name for obj in targets)
+        assert bpy.ops.hiermatch.fit_rig(source=SOURCE, target=name, refine=False) == {"FINISHED"}
+        assert bpy.context.scene.hiermatch_retarget.report.target == name
+        assert bpy.ops.hiermatch.before_after(target=name) == {"FINISHED"}
+        assert [is_before(obj) for obj in targets] == [True, True]
 
 
 class TestStoredMatch:
