@@ -16,7 +16,7 @@ from ..transfers.options.my_rig import MyRigOptions
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
-from ..transfers.retarget_properties import copy_named, retarget_of
+from ..transfers.retarget_properties import copy_named, reported_target, retarget_of
 from .panel_text import draw_notes, draw_text
 from .progress_bar import draw_progress, draw_starter
 
@@ -142,8 +142,8 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
     for line in report.verdict.splitlines():
         draw_text(box, context, line, "ERROR" if report.doubtful else "INFO")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")
-    target = bpy.data.objects.get(report.target)
-    if target is not None and target.type == "ARMATURE":
+    target: Any = reported_target(context)
+    if target is not None and getattr(target, "type", "") == "ARMATURE":
         armature: bpy.types.Object | None = successor(target)
     else:
         armature = target if target is None else find_armature(target)
@@ -152,7 +152,7 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
     poses = row.operator("hiermatch.test_poses", icon="ARMATURE_DATA", depress=pressed)
     hidden = target is not None and is_before(target)
     before = row.operator("hiermatch.before_after", icon="ARROW_LEFTRIGHT", depress=hidden)
-    poses.target = before.target = report.target
+    poses.target = before.target = "" if target is None else report.target
     if report.notes:
         box = layout.box().column()
         for line in report.notes.splitlines():

@@ -8,6 +8,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
+from ..common.access import view_layer_of
+from ..common.errors import ObjectError
+from ..scene.character import parts_of
+from ..scene.pair import named_side
 from .options.motion import MotionOptions
 from .options.my_rig import MyRigOptions
 from .options.retarget import RetargetOptions
@@ -19,8 +23,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from ..jobs.transfer_job import Carried
+    from ..scene.character import Side
 
-__all__ = ["HIERMATCH_PG_report", "HIERMATCH_PG_retarget", "copy_named", "remember_transfer", "retarget_of"]
+__all__ = [
+    "HIERMATCH_PG_report",
+    "HIERMATCH_PG_retarget",
+    "copy_named",
+    "remember_transfer",
+    "reported_target",
+    "retarget_of",
+]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
@@ -66,6 +78,16 @@ class HIERMATCH_PG_retarget(
 def retarget_of(context: bpy.types.Context) -> HIERMATCH_PG_retarget:
     """Return the state of the retargeting panels on the scene."""
     return cast("Any", context.scene).hiermatch_retarget
+
+
+def reported_target(context: bpy.types.Context) -> Side | None:
+    """Return the target of the last transfer; None if nothing in the view layer has its name any more."""
+    layer, name = view_layer_of(context), retarget_of(context).report.target
+    try:
+        target = named_side(layer, name) if name else None
+    except ObjectError:
+        return None
+    return target if target is not None and all(part.name in layer.objects for part in parts_of(target)) else None
 
 
 def copy_named(source: object, target: object, names: Iterable[str]) -> None:

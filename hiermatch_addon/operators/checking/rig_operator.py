@@ -13,7 +13,7 @@ from ...properties.panel_state import picked, state_of
 from ...scene.armatures import find_armature
 from ...scene.character import side_of, successor
 from ...scene.pair import active_side, named_side
-from ...transfers.retarget_properties import retarget_of
+from ...transfers.retarget_properties import reported_target
 
 if TYPE_CHECKING:
     from ...scene.character import Side
@@ -31,14 +31,11 @@ def meant_target(context: bpy.types.Context, name: str) -> Side:
     """
     layer = view_layer_of(context)
     chosen = picked(state_of(context))[1]
-    last = retarget_of(context).report.target
     if name:
         return named_side(layer, name)
     if chosen is not None:
         return side_of(chosen, layer)
-    if last in layer.objects or last in bpy.data.collections:
-        return named_side(layer, last)
-    side = active_side(context)
+    side = reported_target(context) or active_side(context)
     if side is None:
         raise ObjectError("It is open which character is meant. Pick it as the Target, or make it the active object.")
     return side

@@ -8,6 +8,8 @@ from types import SimpleNamespace
 
 import bpy
 import pytest
+from hiermatch.hiermatch_addon.common.errors import ObjectError
+from hiermatch.hiermatch_addon.operators.checking.rig_operator import meant_target
 from hiermatch.hiermatch_addon.panels import answer_menu, retarget_panels
 from hiermatch.hiermatch_addon.panels import match_panels as panels
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES
@@ -330,6 +332,30 @@ def test_the_way_to_see_for_oneself_is_not_below_what_is_to_be_checked(context):
     poses = drawn.index(("switch", "hiermatch.test_poses", False))
     assert drawn.index(("label", "Confidence 83%: so it is.")) < poses < drawn.index(("label", "Check this."))
     assert ("label", "Check that.") in drawn
+
+
+@pytest.mark.parametrize("name", ["Target", "Target + Source"])
+def test_the_buttons_below_a_report_mean_what_is_picked_if_its_target_has_another_name_now(context, monkeypatch, name):
+    buttons = {}
+
+    def operator(_self, name, **_names):
+        return buttons.setdefault(name, SimpleNamespace())
+
+    def drawn():
+        retarget_panels.draw_report(Layout([]), context, report)
+        return {buttons[f"hiermatch.{name}"].target for name in ("test_poses", "before_after")}
+
+    target, report = add_pair()[1], context.scene.hiermatch_retarget.report
+    report.done, report.target = "Carried.", name
+    monkeypatch.setattr(Layout, "operator", operator)
+    assert drawn() == {name}
+    context.scene.hiermatch.target = target
+    target.name = "Other"
+    assert drawn() == {""}
+    assert meant_target(bpy.context, "") == target
+    context.scene.hiermatch.target = None
+    with pytest.raises(ObjectError, match="It is open which character is meant"):
+        meant_target(bpy.context, "")
 
 
 def test_a_match_that_is_out_of_date(context):

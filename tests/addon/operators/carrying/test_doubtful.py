@@ -79,7 +79,8 @@ def test_no_check_mark_stands_before_what_is_doubtful(doubt):
             super().label(text=text)
 
     system = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))
-    context = SimpleNamespace(region=SimpleNamespace(width=300), preferences=system)
+    own = {"scene": bpy.context.scene, "view_layer": bpy.context.view_layer}
+    context = SimpleNamespace(region=SimpleNamespace(width=300), preferences=system, **own)
     drawn = []
     retarget_panels.draw_report(Icons(drawn), context, report)
     assert "Confidence 4%" in texts(drawn)
