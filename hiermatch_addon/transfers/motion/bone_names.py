@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ from ....engine import humanoid_bones
 from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...properties.bone_pairs import bone_pairs_of, rows_of
-from ...scene.armatures import armature_of, moving_armatures, read_skeleton
+from ...scene.armatures import armature_of, read_skeleton
 from ...scene.motion.action_curves import actions_of, renamed_paths
 from .name_tables import NAME_TABLES
 
@@ -140,9 +140,16 @@ def _check_free(armature: bpy.types.Object, changed: Mapping[str, str]) -> None:
         raise ObjectError(
             f'"{armature.name}" has other bones that are called {listed(taken)} already. Rename them first.'
         )
-    for obj in (obj for obj in bpy.data.objects if obj.type == "MESH" and armature in moving_armatures(obj)):
+    for obj in (obj for obj in bpy.data.objects if obj.type == "MESH" and armature.data in _armatures_of(obj)):
         groups = [new for new in changed.values() if new in obj.vertex_groups and new not in bones]
         if groups:
             raise ObjectError(
                 f'"{obj.name}" has other vertex groups that are called {listed(groups)} already. Rename them first.'
             )
+
+
+def _armatures_of(obj: bpy.types.Object) -> list[bpy.types.ID | None]:
+    """Return the data of the armatures whose bones Blender lets the groups of an object follow, also if it is off."""
+    rigs: list[Any] = [cast("Any", one).object for one in obj.modifiers if one.type == "ARMATURE"]
+    rigs += [obj.parent] if obj.parent_type == "ARMATURE" else []
+    return [rig.data for rig in rigs if rig is not None]

@@ -129,6 +129,27 @@ def test_refusals_change_nothing():
         rename(target="Nobody")
 
 
+@pytest.mark.parametrize("held", ["switched off", "parent", "same bones"])
+def test_groups_that_blender_would_rename_are_looked_at_however_a_mesh_is_held(held):
+    armature, _ = add_person("B")
+    body = bpy.data.objects["B Body"]
+    if held == "switched off":
+        body.modifiers["Armature"].show_viewport = body.modifiers["Armature"].show_render = False
+    elif held == "parent":
+        body.modifiers.clear()
+        body.parent_type = "ARMATURE"
+    else:
+        body.parent = body.modifiers["Armature"].object = bpy.data.objects.new("Twin", armature.data)
+    body.vertex_groups.new(name="upperarm_l")
+    before = bones(), weights_of(body)
+    with pytest.raises(RuntimeError, match="other vertex groups"):
+        rename(target="B", names="UNREAL")
+    assert (bones(), weights_of(body)) == before
+    body.vertex_groups.remove(body.vertex_groups["upperarm_l"])
+    assert rename(target="B", names="UNREAL") == {"FINISHED"}
+    assert weights_of(body)["upperarm_l"] == before[1]["upper_arm.L"]
+
+
 def test_what_is_no_person_is_said():
     data = bpy.data.armatures.new("Snake")
     snake = bpy.data.objects.new("Snake", data)
