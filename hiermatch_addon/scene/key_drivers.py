@@ -119,7 +119,8 @@ def point_drivers(
 def _can_be_read(kind: str, place: Any, other: Any) -> bool:  # noqa: ANN401 - a target of a driver's variable
     """Tell whether something has what a variable of such a kind reads."""
     if kind != "SINGLE_PROP":
-        return not place.bone_target or (other.pose is not None and place.bone_target in other.pose.bones)
+        pose = getattr(other, "pose", None)  # a mesh, of which no bone can be read, may stand there as well
+        return not place.bone_target or (pose is not None and place.bone_target in pose.bones)
     try:
         other.path_resolve(place.data_path)
     except ValueError:

@@ -209,6 +209,17 @@ def test_drivers_by_what_the_target_lacks_still_point_to_the_source(pair):
         target["Much"] = 0.8
 
 
+def test_a_driver_that_asks_a_mesh_for_a_bone_is_copied_as_it_is(pair):
+    source, target = pair
+    variable = source.data.shape_keys.key_blocks["Swell"].driver_add("value").driver.variables.new()
+    place = variable.targets[0]
+    place.id_type, place.id = "MESH", source.data
+    variable.type, place.bone_target = "TRANSFORMS", "neck"
+    assert place.id == source.data
+    assert carry() == {"FINISHED"}
+    assert target.data.shape_keys.animation_data.drivers[0].driver.variables[0].targets[0].id == source.data
+
+
 def test_a_key_without_finite_numbers_is_left_out_alone(pair):
     source, target = pair
     source.data.shape_keys.key_blocks["Swell"].data[3].co.x = float("nan")
