@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+from .motion.action_curves import slot_curves
 from .shape_key_io import keys_of
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection
 
     import bpy
 
@@ -37,7 +38,8 @@ def share_key_action(source: bpy.types.Object, target: bpy.types.Object, paths: 
     if mine is None:
         return "", ""
     note = f'The NLA tracks of the shape keys of "{source.name}" were left out.' if mine.nla_tracks else ""
-    if mine.action is None or not any(curve.data_path in paths for curve in _curves(mine)):
+    slot = getattr(mine, "action_slot", None)
+    if mine.action is None or not any(curve.data_path in paths for curve in slot_curves(mine.action, slot)):
         return "", note
     theirs: Any = keys.animation_data or keys.animation_data_create()
     if theirs.action not in (None, mine.action):
@@ -46,15 +48,3 @@ def share_key_action(source: bpy.types.Object, target: bpy.types.Object, paths: 
     if hasattr(mine, "action_slot"):
         theirs.action_slot = mine.action_slot
     return mine.action.name, note
-
-
-def _curves(animation: Any) -> Iterator[Any]:  # noqa: ANN401 - Blender's types differ between versions
-    """Go through the curves that an action has for what it animates."""
-    slot = getattr(animation, "action_slot", None)
-    if slot is None:  # until Blender 4.3, or none of the action is meant
-        yield from () if hasattr(animation, "action_slot") else animation.action.fcurves
-        return
-    for layer in animation.action.layers:
-        for strip in layer.strips:
-            bag = strip.channelbag(slot)
-            yield from () if bag is None else bag.fcurves

@@ -30,6 +30,7 @@ __all__ = [
     "playing",
     "renamed_paths",
     "scaled_bones",
+    "slot_curves",
     "slot_for",
 ]
 
@@ -98,12 +99,26 @@ def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterato
     Curves without keys that no modifier gives values move nothing, nor do those of how a bone bends in itself.
     """
     bones = armature_of(armature).bones
-    for curve in _curves(action, slot_for(action, armature)):
+    for curve in slot_curves(action, slot_for(action, armature)):
         found = _BONE.match(curve.data_path)
         if found is not None and found["channel"] in _TRANSFORMS and _is_heard(curve) and not curve.is_empty:
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
+
+
+def slot_curves(action: bpy.types.Action, slot: Any) -> Iterator[Any]:  # noqa: ANN401 - new in Blender 4.4
+    """Go through the curves of a slot of an action: all until Blender 4.3, later none without a slot."""
+    if not hasattr(action, "slots"):
+        yield from cast("Any", action).fcurves
+        return
+    if slot is None:
+        return
+    for layer in cast("Any", action).layers:
+        for strip in layer.strips:
+            bag = cast("Any", strip).channelbag(slot)
+            if bag is not None:
+                yield from bag.fcurves
 
 
 def every_curve(action: bpy.types.Action) -> Iterator[Any]:
@@ -112,7 +127,7 @@ def every_curve(action: bpy.types.Action) -> Iterator[Any]:
         yield from cast("Any", action).fcurves
         return
     for slot in cast("Any", action).slots:
-        yield from _curves(action, slot)
+        yield from slot_curves(action, slot)
 
 
 def moves_bones(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
@@ -138,7 +153,7 @@ def scaled_bones(action: bpy.types.Action, armature: bpy.types.Object) -> list[s
 
 def frame_range(action: bpy.types.Action, armature: bpy.types.Object) -> tuple[float, float]:
     """Return the first and the last frame of an action, of an armature's own slot if others have keys elsewhere."""
-    curves = list(_curves(action, slot_for(action, armature)))
+    curves = list(slot_curves(action, slot_for(action, armature)))
     ends = [curve.range() for curve in curves if len(curve.keyframe_points)]
     if action.use_frame_range or not ends:
         return float(action.frame_range[0]), float(action.frame_range[1])
@@ -156,7 +171,7 @@ def renamed_paths(
         Each curve of such a bone with its path then, and its group, or None, with its name.
     """
     found = []
-    for curve in _curves(action, slot_for(action, armature)):
+    for curve in slot_curves(action, slot_for(action, armature)):
         start = _BONE_PATH.match(curve.data_path)
         name = "" if start is None else bpy.utils.unescape_identifier(start["name"])
         if name in names:
@@ -173,7 +188,7 @@ def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Itera
 
     Curves that stay at one value move nothing.
     """
-    for curve in _curves(action, slot_for(action, armature)):
+    for curve in slot_curves(action, slot_for(action, armature)):
         if curve.data_path in _TRANSFORMS and _is_heard(curve):
             values = [point.co[1] for point in curve.keyframe_points]
             if len(curve.modifiers) or (values and max(values) - min(values) > _STILL):
@@ -264,22 +279,8 @@ def _clear(action: Any) -> None:  # noqa: ANN401 - before Blender 4.4
             parts.remove(part)
 
 
-def _curves(action: bpy.types.Action, slot: Any) -> Iterator[Any]:  # noqa: ANN401 - new in Blender 4.4
-    """Go through the curves of a slot of an action."""
-    if not hasattr(action, "slots"):
-        yield from cast("Any", action).fcurves
-        return
-    if slot is None:
-        return
-    for layer in cast("Any", action).layers:
-        for strip in layer.strips:
-            bag = cast("Any", strip).channelbag(slot)
-            if bag is not None:
-                yield from bag.fcurves
-
-
 def _matching(action: bpy.types.Action, slot: Any, armature: bpy.types.Object) -> int:  # noqa: ANN401 - see above
     """Count the curves of a slot that move bones of an armature."""
     bones = armature_of(armature).bones
-    found = (_BONE.match(curve.data_path) for curve in _curves(action, slot))
+    found = (_BONE.match(curve.data_path) for curve in slot_curves(action, slot))
     return sum(match is not None and bpy.utils.unescape_identifier(match["name"]) in bones for match in found)
