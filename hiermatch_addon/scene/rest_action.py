@@ -9,7 +9,7 @@ import bpy
 from mathutils import Matrix
 
 from .armatures import armature_of
-from .motion.action_curves import MADE_FOR, assign_action, lent_action
+from .motion.action_curves import MADE_FOR, TRANSFORMS, assign_action, lent_action, rotation_channel
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,8 +30,6 @@ _KEPT = "hiermatch_kept"
 
 AS_IT_WAS = "as it was"
 """Kind of the pose in which a target looks as it did before it was brought to another rest pose."""
-
-_CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 
 
 def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.float64]]) -> dict[str, Matrix]:
@@ -119,10 +117,9 @@ def keep_pose(
         animation.action = action
         for bone_name, basis in bases.items():
             bone = pose.bones[bone_name]
-            stood = {channel: list(getattr(bone, channel)) for channel in _CHANNELS}
+            stood = {channel: list(getattr(bone, channel)) for channel in TRANSFORMS}
             bone.matrix_basis = basis
-            rotation = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
-            for channel in ("location", rotation.get(bone.rotation_mode, "rotation_euler"), "scale"):
+            for channel in ("location", rotation_channel(bone.rotation_mode), "scale"):
                 bone.keyframe_insert(channel, frame=1, group=bone_name)
             if not show:
                 for channel, value in stood.items():

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MADE_FOR",
+    "TRANSFORMS",
     "CurveMaker",
     "actions_of",
     "assign_action",
@@ -29,6 +30,7 @@ __all__ = [
     "played_action",
     "playing",
     "renamed_paths",
+    "rotation_channel",
     "scaled_bones",
     "slot_curves",
     "slot_for",
@@ -38,7 +40,10 @@ _BONE_PATH = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]')
 
 _BONE = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]\.(?P<channel>\w+)$')
 
-_TRANSFORMS = ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale")
+TRANSFORMS = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
+"""Channels in which a bone or an object keeps how it stands, the rotation in the one of its mode."""
+
+_ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 
 _STILL = 1e-6
 """Difference of values up to which a curve moves nothing: rounding of what is written by single precision."""
@@ -101,7 +106,7 @@ def bone_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Iterato
     bones = armature_of(armature).bones
     for curve in slot_curves(action, slot_for(action, armature)):
         found = _BONE.match(curve.data_path)
-        if found is not None and found["channel"] in _TRANSFORMS and _is_heard(curve) and not curve.is_empty:
+        if found is not None and found["channel"] in TRANSFORMS and _is_heard(curve) and not curve.is_empty:
             name = bpy.utils.unescape_identifier(found["name"])
             if name in bones:
                 yield name, found["channel"], curve
@@ -128,6 +133,11 @@ def every_curve(action: bpy.types.Action) -> Iterator[Any]:
         return
     for slot in cast("Any", action).slots:
         yield from slot_curves(action, slot)
+
+
+def rotation_channel(mode: str) -> str:
+    """Return the channel in which a bone of such a rotation mode keeps its rotation."""
+    return _ROTATIONS.get(mode, "rotation_euler")
 
 
 def moves_bones(action: bpy.types.Action, armature: bpy.types.Object) -> bool:
@@ -189,7 +199,7 @@ def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Itera
     Curves that stay at one value move nothing.
     """
     for curve in slot_curves(action, slot_for(action, armature)):
-        if curve.data_path in _TRANSFORMS and _is_heard(curve):
+        if curve.data_path in TRANSFORMS and _is_heard(curve):
             values = [point.co[1] for point in curve.keyframe_points]
             if len(curve.modifiers) or (values and max(values) - min(values) > _STILL):
                 yield curve.data_path, curve

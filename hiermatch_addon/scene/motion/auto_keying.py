@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from .action_curves import played_action
-from .motion_io import rotation_channel
+from .action_curves import played_action, rotation_channel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

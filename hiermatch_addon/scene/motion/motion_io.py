@@ -19,6 +19,7 @@ from .action_curves import (
     frame_range,
     object_curves,
     played_action,
+    rotation_channel,
     slot_for,
 )
 from .carried_action_io import carried_before, mark_carried, put_aside, was_carried, was_edited
@@ -41,15 +42,12 @@ __all__ = [
     "needs_evaluation",
     "posed_at",
     "read_keys",
-    "rotation_channel",
     "set_pose",
     "turned_above",
     "turned_at",
     "with_object",
     "write_action",
 ]
-
-_ROTATIONS = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -357,8 +355,3 @@ def turned_above(armature: bpy.types.Object, moved: Collection[str]) -> list[str
     above = {parent.name for name in moved if name in bones for parent in bones[name].parent_recursive}
     chosen = [bone for bone in bones if bone.name in above.difference(moved)]
     return [bone.name for bone in chosen if bone.matrix_basis.to_quaternion().angle > _TURNED]
-
-
-def rotation_channel(mode: str) -> str:
-    """Return the channel in which a bone of such a rotation mode keeps its rotation."""
-    return _ROTATIONS.get(mode, "rotation_euler")

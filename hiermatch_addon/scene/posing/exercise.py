@@ -13,6 +13,7 @@ from mathutils import Matrix
 
 from ..armatures import armature_of, bone_of, moving_armatures
 from ..deform_layer import read_weights
+from ..motion.action_curves import rotation_channel
 from .pose_state import bring_back, is_aside, put_aside
 
 if TYPE_CHECKING:
@@ -33,8 +34,6 @@ _ANGLE: Final = math.radians(45.0)
 
 _BEAT: Final = 5
 """Frames from one pose to the next."""
-
-_ROTATIONS: Final = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 
 
 def bending_bones(armature: bpy.types.Object) -> list[str]:
@@ -84,7 +83,7 @@ def begin_exercise(scene: bpy.types.Scene, armature: bpy.types.Object, bones: It
     frame, markers = 1, []
     for name in bones:
         bone = pose.bones[name]
-        channel = _ROTATIONS.get(bone.rotation_mode, "rotation_euler")
+        channel = rotation_channel(bone.rotation_mode)
         for number, turn in enumerate(turns):
             bone.matrix_basis = turn or Matrix()
             bone.keyframe_insert(channel, frame=frame + number * _BEAT, group=name)

@@ -7,7 +7,7 @@ import json
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from ..armatures import armature_of
-from ..motion.action_curves import played_action
+from ..motion.action_curves import TRANSFORMS, played_action
 
 if TYPE_CHECKING:
     import bpy
@@ -19,8 +19,6 @@ _STATE: Final = "hiermatch_pose_aside"
 
 _ACTION: Final = "hiermatch_action_aside"
 """Custom property of the armature: its action, as a pointer that follows renaming."""
-
-_CHANNELS: Final = ("location", "rotation_quaternion", "rotation_euler", "rotation_axis_angle", "scale")
 
 
 def is_aside(armature: bpy.types.Object, why: str) -> bool:
@@ -54,7 +52,7 @@ def put_aside(armature: bpy.types.Object, why: str) -> None:
             "nla": animation.use_nla,
             "tweaked": tweaked,
             "position": armature_of(armature).pose_position,
-            "pose": {bone.name: [list(getattr(bone, channel)) for channel in _CHANNELS] for bone in bones},
+            "pose": {bone.name: [list(getattr(bone, channel)) for channel in TRANSFORMS] for bone in bones},
             "held": held,
         }
     )
@@ -83,7 +81,7 @@ def bring_back(armature: bpy.types.Object) -> None:
     bones = cast("bpy.types.Pose", armature.pose).bones
     for name, values in state["pose"].items():
         if name in bones:
-            for channel, value in zip(_CHANNELS, values, strict=True):
+            for channel, value in zip(TRANSFORMS, values, strict=True):
                 setattr(bones[name], channel, value)
     for name, constraint in state["held"]:
         if name in bones and constraint in bones[name].constraints:

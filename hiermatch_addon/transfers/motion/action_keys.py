@@ -10,7 +10,8 @@ import numpy as np
 
 from ....engine import local_transforms, reduced_keys, rotation_channels, slopes_of
 from ...scene.armatures import armature_of
-from ...scene.motion.motion_io import OBJECT, BoneKeys, rotation_channel
+from ...scene.motion.action_curves import rotation_channel
+from ...scene.motion.motion_io import OBJECT, BoneKeys
 from ...scene.motion.rigs import own_skeleton, rest_matrices
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from ....engine import Progress, rotation_channels
 from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.armatures import armature_of
+from ...scene.motion.action_curves import rotation_channel
 from ...scene.motion.control_pose_io import posed_controls, set_switches
 from ...scene.motion.control_rigs import (
     candidates_of,
@@ -21,7 +22,6 @@ from ...scene.motion.control_rigs import (
     with_carrier,
     worth_trying,
 )
-from ...scene.motion.motion_io import rotation_channel
 from ...scene.motion.rigs import own_skeleton, rig_of
 from .action_keys import LOCATION, BoneChannels
 
