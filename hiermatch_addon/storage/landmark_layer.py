@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import bmesh
+import bpy
 import numpy as np
 
 from ..common.access import mesh_of
@@ -21,12 +22,19 @@ from ..scene.mesh_io import add_values, read_values
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    import bpy
     from numpy.typing import NDArray
 
     from .landmarks import Mark
 
-__all__ = ["LANDMARKS", "has_landmarks", "read_marks", "select_vertices", "selected_vertices", "write_marks"]
+__all__ = [
+    "LANDMARKS",
+    "has_landmarks",
+    "numbers_in_file",
+    "read_marks",
+    "select_vertices",
+    "selected_vertices",
+    "write_marks",
+]
 
 LANDMARKS = "HM Landmark"
 """Name of the attribute."""
@@ -42,8 +50,16 @@ def has_landmarks(mesh: bpy.types.Mesh) -> bool:
 
 def read_marks(obj: bpy.types.Object) -> dict[int, Mark]:
     """Return the vertex of each landmark of a mesh, positive, and whether it is on, by their numbers."""
-    mesh = mesh_of(obj)
-    if obj.mode == "EDIT":
+    return _read(mesh_of(obj))
+
+
+def numbers_in_file() -> set[int]:
+    """Return the numbers of the landmarks of all meshes."""
+    return {number for mesh in bpy.data.meshes for number in _read(mesh)}
+
+
+def _read(mesh: bpy.types.Mesh) -> dict[int, Mark]:
+    if mesh.is_editmode:
         with _edited(mesh) as edited:
             layer = edited.verts.layers.float_vector.get(LANDMARKS)
             values = None if layer is None else np.array([vertex[layer] for vertex in edited.verts], np.float32)

@@ -2,7 +2,8 @@
 """Landmarks of a pair of meshes: corresponding vertices that the user names.
 
 The two vertices of a landmark have the same number.  A mesh may have landmarks in common with several others: its own
-then serve with all of them, each as far as the other mesh has the same number.
+then serve with all of them, each as far as the other mesh has the same number.  So a new one gets a number that no mesh
+of the file has, also none that lost its partner: else it would be one with that mesh, too.
 """
 
 from __future__ import annotations
@@ -112,11 +113,10 @@ def add_landmarks(source: Side, target: Side, pairs: Iterable[tuple[int, int]], 
     """
     _check_writable(source, target)
     there, back = read_marks(source), read_marks(target)
+    taken = landmark_layer.numbers_in_file()
     added = []
     for pair in pairs:
-        number = _number_for(pair, there, back)
-        if number > _MOST:
-            raise ObjectError(f"A mesh can have {_MOST} landmarks. Remove some first.")
+        number = _number_for(pair, there, back, taken)
         for marks, vertex in zip((there, back), pair, strict=True):
             for other in [other for other, (place, _) in marks.items() if place == vertex]:
                 del marks[other]
@@ -188,13 +188,19 @@ def clear_landmarks(source: Side, target: Side) -> int:
     return len(common)
 
 
-def _number_for(pair: tuple[int, int], there: dict[int, Mark], back: dict[int, Mark]) -> int:
-    """Choose the number of a landmark: one that a vertex of it has, else one that is free on both meshes."""
+def _number_for(pair: tuple[int, int], there: dict[int, Mark], back: dict[int, Mark], taken: set[int]) -> int:
+    """Choose the number of a landmark: one that a vertex of it has, else one that neither mesh has.
+
+    It is none of those `taken` in the file as long as there are others.
+    """
     for marks, vertex in zip((there, back), pair, strict=True):
         for number, (place, _) in marks.items():
             if place == vertex:
                 return number
-    return next(number for number in range(1, _MOST + 2) if number not in there and number not in back)
+    free = [number for number in range(1, _MOST + 1) if number not in there and number not in back]
+    if not free:
+        raise ObjectError(f"A mesh can have {_MOST} landmarks. Remove some first.")
+    return min(free, key=taken.__contains__)
 
 
 def read_marks(side: Side) -> dict[int, Mark]:

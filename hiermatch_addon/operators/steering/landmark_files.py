@@ -14,7 +14,7 @@ from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.running import can_start
 from ...storage.landmark_files import landmarks_from_text, landmarks_to_text
-from ...storage.landmarks import add_landmarks, clear_landmarks, find_landmarks, rename_landmark, switch_landmark
+from ...storage.landmarks import add_landmarks, find_landmarks, remove_landmark, rename_landmark, switch_landmark
 from ..pair_operator import FileOperator
 from .landmark_operator import LandmarkOperator
 
@@ -73,9 +73,10 @@ class HIERMATCH_OT_load_landmarks(_LandmarkFile, bpy.types.Operator):
     def _edit(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         path = self._path()
         landmarks, notes = landmarks_from_text(read_text(path), source, target)
-        if self.replace:
-            clear_landmarks(source, target)
         pairs = [(landmark.source, landmark.target) for landmark in landmarks]
+        for old in find_landmarks(source, target) if self.replace else ():
+            if (old.source, old.target) not in pairs:  # else it keeps its number, by which third meshes know it
+                remove_landmark(source, target, old.number)
         for read, added in zip(landmarks, add_landmarks(source, target, pairs), strict=True):
             if not read.use:
                 switch_landmark(source, target, added.number, use=False)

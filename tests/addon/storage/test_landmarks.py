@@ -33,6 +33,18 @@ def pair():
     return source, target
 
 
+@pytest.fixture
+def third(pair):
+    """A mesh with landmarks 1 to 3 in common with the source, of which the pair has removed number 2."""
+    other = pair[1].copy()
+    other.data = pair[1].data.copy()
+    bpy.context.collection.objects.link(other)
+    for target in (pair[1], other):
+        add_landmarks(pair[0], target, [(70, 30), (80, 40), (90, 50)])
+    bpy.ops.hiermatch.remove_landmark(number=2)
+    return other
+
+
 def add(source_vertex, target_vertex):
     return bpy.ops.hiermatch.add_landmark(source_vertex=source_vertex, target_vertex=target_vertex)
 
@@ -85,6 +97,14 @@ class TestKeeping:
         add_landmarks(pair[0], other, [(3, 7), (4, 8)])
         assert found(pair) == [(1, 3, 5)]
         assert found((pair[0], other)) == [(1, 3, 7), (2, 4, 8)]
+
+    @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+    def test_a_number_that_a_third_mesh_has_is_not_given_again(self, pair, third, mode):
+        if mode == "EDIT":
+            edit(third)
+        add(200, 200)
+        assert found(pair) == [(1, 70, 30), (3, 90, 50), (4, 200, 200)]
+        assert found((pair[0], third)) == [(1, 70, 30), (3, 90, 50)]
 
     def test_they_survive_saving_renaming_and_undo(self, pair, tmp_path):
         bpy.ops.ed.undo_push(message="Before")
@@ -366,6 +386,12 @@ class TestFiles:
         add_landmarks(*pair, [(50, 60)])
         bpy.ops.hiermatch.load_landmarks(filepath=str(path), replace=False)
         assert found(pair) == [(1, 50, 60), (2, 3, 5), (3, 100, 110)]
+
+    def test_what_is_there_keeps_its_number_for_third_meshes(self, pair, third, tmp_path):
+        path = str(tmp_path / "two.json")
+        bpy.ops.hiermatch.save_landmarks(filepath=path)
+        bpy.ops.hiermatch.load_landmarks(filepath=path)
+        assert found(pair) == found((pair[0], third)) == [(1, 70, 30), (3, 90, 50)]
 
     def test_on_a_mesh_that_was_renumbered(self, pair, path):
         places = [pair[0].data.vertices[vertex].co.copy() for vertex in (3, 100)]
