@@ -18,7 +18,7 @@ from ..jobs.running import can_start
 from ..properties.steering_lists import common_match, steered_pair
 from ..properties.steering_properties import steering_of
 from ..scene.character import parts_of
-from ..scene.pair import check_writable
+from ..scene.pair import check_mode, check_writable
 from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
 
 if TYPE_CHECKING:
@@ -43,6 +43,7 @@ def _match_of(context: bpy.types.Context) -> tuple[Half, Half]:
     for half in halves:
         for part in parts_of(half.obj):
             check_writable(part)
+            check_mode(part)
     return halves
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "active_side",
+    "check_mode",
     "check_object",
     "check_own_mesh",
     "check_pair",
@@ -325,7 +326,7 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
             f'"{obj.name}" is not shown: its collection is hidden or disabled in viewports, or it is outside of Local '
             "View. Show its collection in the Outliner, or leave Local View (View > Local View)."
         )
-    _check_mode(obj)
+    check_mode(obj)
     if not len(mesh_of(obj).polygons):
         raise ObjectError(f'"{obj.name}" has no faces. A surface is needed, not only vertices or edges.')
     scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
@@ -366,8 +367,14 @@ def _check_type(obj: bpy.types.Object) -> None:
         )
 
 
-def _check_mode(obj: bpy.types.Object) -> None:
-    """Make sure that neither a mesh object nor another one with its mesh is being edited or painted."""
+def check_mode(obj: bpy.types.Object) -> None:
+    """Make sure that neither a mesh object nor another one with its mesh is being edited or painted.
+
+    Raises
+    ------
+    ObjectError
+        If one is.
+    """
     if obj.mode != "OBJECT":
         raise ObjectError(f'"{obj.name}" is in {_title(obj.mode)} Mode. Switch to Object Mode first.')
     if mesh_of(obj).is_editmode:

@@ -71,7 +71,7 @@ def _read(mesh: bpy.types.Mesh) -> dict[int, Mark]:
 def write_marks(obj: bpy.types.Object, marks: dict[int, Mark]) -> None:
     """Let these be the landmarks of a mesh; without any, the attribute goes."""
     mesh = mesh_of(obj)
-    if obj.mode == "EDIT":
+    if mesh.is_editmode:
         _write_edited(mesh, marks)
         return
     attributes: Any = mesh.attributes
@@ -97,7 +97,7 @@ def selected_vertices(obj: bpy.types.Object) -> list[int]:
 def select_vertices(obj: bpy.types.Object, vertices: Iterable[int]) -> None:
     """Select some vertices of a mesh and nothing else of it; in Object Mode, they will be selected in Edit Mode."""
     mesh, chosen = mesh_of(obj), list(vertices)
-    if obj.mode == "EDIT":
+    if mesh.is_editmode:
         with _edited(mesh) as edited:
             for element in (*edited.faces, *edited.edges, *edited.verts):
                 element.select = False

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.character import positions_of, read_surface, topology_of, vertex_count
-from ..scene.pair import check_pair
+from ..scene.character import parts_of, positions_of, read_surface, topology_of, vertex_count
+from ..scene.pair import check_mode, check_pair
 from . import writing
 from .answer_writing import contents_with_maps, restored
 from .contents import contents
@@ -43,7 +43,7 @@ def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     Raises
     ------
     ObjectError
-        If they carry no match with one another or several, or have other faces since.
+        If they carry no match with one another or several, have other faces since, or are being edited.
     """
     pair = f'"{one.name}" and "{other.name}"'
     found = [halves for halves in find_common(one, other) if prefix in ("", halves[0].prefix)]
@@ -54,6 +54,8 @@ def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
         raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
     source, target = sorted(found[0], key=lambda half: half.role)  # "source" comes before "target"
     for half in (source, target):
+        for part in parts_of(half.obj):
+            check_mode(part)
         if stale := half.staleness():
             raise ObjectError(stale)
     stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=source is not found[0][0])

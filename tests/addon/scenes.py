@@ -69,6 +69,17 @@ def add_pair():
     return source, target
 
 
+def edit_twin(obj):
+    """Put another object with the same mesh into Edit Mode, and return it."""
+    twin = obj.copy()
+    bpy.context.collection.objects.link(twin)
+    bpy.ops.object.select_all(action="DESELECT")
+    twin.select_set(state=True)
+    bpy.context.view_layer.objects.active = twin
+    bpy.ops.object.mode_set(mode="EDIT")
+    return twin
+
+
 def add_symmetric(name, segments=24, rings=16):
     """Add a long body with two equal sides, y and -y, and different ends, top and bottom."""
     obj = add_ball(name, segments, rings)

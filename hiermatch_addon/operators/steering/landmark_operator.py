@@ -14,7 +14,7 @@ from ...jobs.running import is_running
 from ...properties.panel_state import pick, picked, state_of
 from ...properties.steering_lists import sync_lists
 from ...scene.character import Character, parts_of
-from ...scene.pair import check_writable, find_pair
+from ...scene.pair import check_mode, check_writable, find_pair
 from ..pair_operator import PairOperator
 
 if TYPE_CHECKING:
@@ -29,7 +29,8 @@ def steerable_pair(context: bpy.types.Context, names: tuple[str, str] = ("", "")
     Raises
     ------
     ObjectError
-        If that leaves open which, or one of them is no mesh of this file's own.
+        If that leaves open which, or one of them is no mesh of this file's own, or is neither in Object Mode nor in
+        Edit Mode itself.
     """
     state = state_of(context)
     source, target = find_pair(context, names, picked(state))
@@ -42,8 +43,8 @@ def steerable_pair(context: bpy.types.Context, names: tuple[str, str] = ("", "")
         if obj.type != "MESH":
             raise ObjectError(f'"{obj.name}" is not a mesh. Pick two mesh objects as Source and Target.')
         check_writable(obj)
-        if obj.mode not in ("OBJECT", "EDIT"):
-            raise ObjectError(f'"{obj.name}" is in {obj.mode.replace("_", " ").title()} Mode. Leave it first.')
+        if obj.mode != "EDIT":
+            check_mode(obj)
     return source, target
 
 

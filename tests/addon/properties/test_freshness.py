@@ -12,7 +12,7 @@ from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.properties import freshness
 from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
-from tests.addon.scenes import QUICK, add_blob, add_pair, snapshot
+from tests.addon.scenes import QUICK, add_blob, add_pair, edit_twin, snapshot
 
 
 def summary():
@@ -234,6 +234,12 @@ class TestWatching:
         in_edit_mode(quiet[0], lambda: bpy.ops.transform.resize(value=(1, 1, 2)))
         bpy.context.view_layer.update()
         assert waiting()
+
+    def test_a_mesh_that_is_edited_through_another_object(self, quiet):
+        bpy.ops.hiermatch.add_landmark(source="Source", target="Target", source_vertex=3, target_vertex=4)
+        edit_twin(quiet[0])
+        assert freshness._look() is None  # noqa: SLF001
+        assert [row.source for row in bpy.context.scene.hiermatch_steering.landmarks] == [3]
 
     def test_deleting_an_object(self, quiet):
         activate(quiet[1])

@@ -22,7 +22,7 @@ from hiermatch.hiermatch_addon.storage.written_names import written_names
 from mathutils import Matrix, Vector
 from scipy.spatial import cKDTree
 
-from tests.addon.scenes import QUICK, add_pair, add_symmetric_pair, snapshot, weights_of
+from tests.addon.scenes import QUICK, add_pair, add_symmetric_pair, edit_twin, snapshot, weights_of
 
 
 @pytest.fixture
@@ -199,6 +199,16 @@ class TestEditing:
         bpy.ops.object.mode_set(mode="OBJECT")
         assert found(pair) == [(1, 3, 5), (2, 7, 8)]
         assert [one.use for one in find_landmarks(*pair)] == [False, True]
+
+    def test_a_mesh_that_is_edited_through_another_object_is_read_and_left_alone(self, pair):
+        add(3, 5)
+        edit_twin(pair[0])
+        bpy.context.scene.hiermatch.source = pair[0]
+        assert found(pair) == listed() == [(1, 3, 5)]
+        for operator in (lambda: add(7, 8), lambda: bpy.ops.hiermatch.select_landmark(number=1)):
+            with pytest.raises(RuntimeError, match='"Source" shares its mesh with an object in Edit Mode'):
+                operator()
+        assert found(pair) == [(1, 3, 5)]
 
     @pytest.mark.parametrize("chosen", [(), (1, 2)])
     def test_one_vertex_on_each_has_to_be_selected(self, pair, chosen):

@@ -15,7 +15,7 @@ from hiermatch.hiermatch_addon.storage.match_exchange import apply_match, collec
 from hiermatch.hiermatch_addon.storage.match_file import load_match, save_match
 from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
-from tests.addon.scenes import MAP_ATTRIBUTES, QUICK, add_pair, mesh_snapshot, snapshot, values_of
+from tests.addon.scenes import MAP_ATTRIBUTES, QUICK, add_pair, edit_twin, mesh_snapshot, snapshot, values_of
 
 SUFFIXES = ["npz", "json"]
 
@@ -242,6 +242,14 @@ def test_operators_export_and_import(dense_pair, tmp_path):
         bpy.ops.hiermatch.export_match(filepath=str(tmp_path / "a.txt"), source="Source", target="Target")
     with pytest.raises(RuntimeError, match="Prefix is empty"):
         bpy.ops.hiermatch.import_match(filepath=path, source="Source", target="Target", prefix="")
+
+
+def test_a_mesh_that_is_edited_through_another_object_is_refused(dense_pair, tmp_path):
+    edit_twin(dense_pair[1])
+    bpy.context.view_layer.objects.active = dense_pair[0]
+    assert bpy.context.mode == "OBJECT"
+    with pytest.raises(RuntimeError, match='"Target" shares its mesh with an object in Edit Mode'):
+        bpy.ops.hiermatch.export_match(filepath=str(tmp_path / "a.npz"), source="Source", target="Target")
 
 
 @pytest.mark.usefixtures("dense_pair")

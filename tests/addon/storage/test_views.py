@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from types import SimpleNamespace
 
 import bpy
@@ -13,7 +14,7 @@ from hiermatch.hiermatch_addon.storage.views.view_colors import check_size, chec
 from hiermatch.hiermatch_addon.storage.views.views import VIEW_ITEMS, attribute_of
 
 from tests.addon.conftest import ROOT
-from tests.addon.scenes import QUICK, add_pair, mesh_snapshot, snapshot, values_of, weights_of
+from tests.addon.scenes import QUICK, add_pair, edit_twin, mesh_snapshot, snapshot, values_of, weights_of
 from tests.addon.test_rules import BLENDER, imported
 
 VIEWS = [view for view, *_ in VIEW_ITEMS if view != "NONE"]
@@ -163,6 +164,13 @@ class TestViews:
             bpy.ops.hiermatch.show(view="CHECKER")
         with pytest.raises(RuntimeError, match="out of date"):
             bpy.ops.hiermatch.write_regions()
+
+    def test_of_a_mesh_that_is_edited_through_another_object(self, dense_pair):
+        edit_twin(dense_pair[0])
+        bpy.context.view_layer.objects.active = dense_pair[1]
+        for operator in (partial(bpy.ops.hiermatch.show, view="CHECKER"), bpy.ops.hiermatch.write_regions):
+            with pytest.raises(RuntimeError, match='"Source" shares its mesh with an object in Edit Mode'):
+                operator()
 
     def test_a_group_in_the_way(self, sparse_pair):
         sparse_pair[1].vertex_groups.new(name="HM Region.003")
