@@ -13,6 +13,7 @@ from bpy_extras.io_utils import ExportHelper
 from ...engine import HierMatchError
 from ..common.access import view_layer_of
 from ..common.translated_text import translated
+from ..jobs.running import can_start
 from ..properties.panel_state import picked, state_of
 from ..scene.pair import find_pair, selected_meshes
 from ..storage.halves import find_keyed
@@ -68,6 +69,11 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
         description="What the names start with that the match wrote; if empty, the one match that the objects carry",
         options={"SKIP_SAVE"},
     )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it in Object Mode, when nothing else is running."""
+        return can_start(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Read the match and write the file."""

@@ -253,6 +253,15 @@ def test_a_mesh_that_is_edited_through_another_object_is_refused(dense_pair, tmp
 
 
 @pytest.mark.usefixtures("dense_pair")
+def test_it_is_no_work_for_edit_mode():
+    bpy.context.view_layer.objects.active = bpy.data.objects["Source"]
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert not bpy.ops.hiermatch.export_match.poll()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert bpy.ops.hiermatch.export_match.poll()
+
+
+@pytest.mark.usefixtures("dense_pair")
 def test_without_a_selection_the_match_that_the_panel_shows_is_exported(tmp_path):
     shown, named = (str(tmp_path / f"{name}.npz") for name in ("shown", "named"))
     bpy.ops.object.select_all(action="DESELECT")
