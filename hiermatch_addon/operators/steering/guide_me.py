@@ -16,7 +16,7 @@ from ...properties.panel_state import state_of
 from ...properties.properties import OPTION_NAMES
 from ...scene.pair import name_of
 from ...storage.landmarks import find_landmarks, remove_landmark
-from .landmark_clicks import LandmarkClicks
+from .landmark_clicks import LandmarkClicks, is_key
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -27,9 +27,6 @@ __all__ = ["Guide", "HIERMATCH_OT_guide_me"]
 
 _PLACES: Final = ("Nose", "Left Hand", "Right Hand", "Left Foot", "Right Foot", "Tail")
 """What is asked for, in turn; left and right are the character's own, and hands are the forefeet of an animal."""
-
-_SKIP: Final = ("S", "SPACE", "TAB", "RIGHT_ARROW")
-"""Keys that leave a place out."""
 
 
 class Guide(LandmarkClicks):
@@ -44,7 +41,7 @@ class Guide(LandmarkClicks):
 
     def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Leave a place out, or take a click; after the last place match."""
-        if event.type in _SKIP and event.value == "PRESS":
+        if is_key(context, event, "S"):
             self._pending = None
             self._step += 1
             answer: set[OperatorReturnItems] = {"RUNNING_MODAL"}

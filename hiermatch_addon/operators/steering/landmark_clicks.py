@@ -22,7 +22,7 @@ from ...scene.character import SideReference, parts_of, vertex_count, vertex_ran
 from ...storage.landmarks import add_landmarks, find_landmarks
 from .landmark_operator import pick_pair, steerable_pair
 from .landmark_picking import cast_ray, places_around
-from .viewports import viewport_at
+from .viewports import is_in_viewport, viewport_at
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 else:
     _Operator = object
 
-__all__ = ["LandmarkClicks"]
+__all__ = ["LandmarkClicks", "is_key"]
 
 _MOVES: Final = ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE")
 """Events of which there are many, and that change nothing."""
@@ -110,9 +110,10 @@ class LandmarkClicks(_Operator):
         return self._handle(context, event)
 
     def _handle(self, context: bpy.types.Context, event: bpy.types.Event) -> set[OperatorReturnItems]:
-        """Take a click in a viewport; leave everything else to Blender."""
-        if event.type in ("ESC", "RET", "NUMPAD_ENTER", "RIGHTMOUSE") and event.value == "PRESS":
-            back = event.type in ("ESC", "RIGHTMOUSE")
+        """Take a click in a viewport, or a key over one; leave everything else to Blender."""
+        viewport = viewport_at(context, event.mouse_x, event.mouse_y) if event.value == "PRESS" else None
+        back = is_key(context, event, "ESC") or (event.type == "RIGHTMOUSE" and viewport is not None)
+        if back or is_key(context, event, "RET", "NUMPAD_ENTER"):
             if self._pending is not None and back:
                 self._pending = None
                 self._show_status(context)
@@ -121,9 +122,7 @@ class LandmarkClicks(_Operator):
             if not back:
                 self._done(context)
             return {"FINISHED"}
-        pressed = event.type == "LEFTMOUSE" and event.value == "PRESS" and not event.alt
-        viewport = viewport_at(context, event.mouse_x, event.mouse_y) if pressed else None
-        if viewport is None:
+        if viewport is None or event.type != "LEFTMOUSE" or event.alt:
             return {"PASS_THROUGH"}
         meant_for_us = context.mode == "OBJECT"  # in another mode the click does there what it always does
         try:
@@ -259,6 +258,13 @@ class LandmarkClicks(_Operator):
 
     def _done(self, context: bpy.types.Context) -> None:
         """Go on after Enter."""
+
+
+def is_key(context: bpy.types.Context, event: bpy.types.Event, *names: str) -> bool:
+    """Tell whether one of some keys is pressed alone, while the mouse is in a 3D viewport or on what lies over one."""
+    held = event.alt or event.ctrl or event.oskey or event.shift
+    pressed = event.type in names and event.value == "PRESS" and not held
+    return pressed and is_in_viewport(context, event.mouse_x, event.mouse_y)
 
 
 def _key(landmark: Landmark) -> tuple[int, int, int]:

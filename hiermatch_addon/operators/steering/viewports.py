@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["Viewport", "viewport_at"]
+__all__ = ["Viewport", "is_in_viewport", "viewport_at"]
 
 _OFFSET: Final = 10
 """How far the ball of axes is from the corner of a viewport, in pixels; this and the next are Blender's own."""
@@ -57,7 +57,13 @@ def viewport_at(context: bpy.types.Context, x: int, y: int) -> Viewport | None:
     return None
 
 
-def _covers(region: bpy.types.Region, x: int, y: int) -> bool:
+def is_in_viewport(context: bpy.types.Context, x: int, y: int) -> bool:
+    """Tell whether a place of the window is in a 3D viewport, or on what lies over one."""
+    screen = context.screen
+    return any(area.type == "VIEW_3D" and _covers(area, x, y) for area in (screen.areas if screen else ()))
+
+
+def _covers(region: bpy.types.Region | bpy.types.Area, x: int, y: int) -> bool:
     return region.x <= x < region.x + region.width and region.y <= y < region.y + region.height and region.width > 1
 
 

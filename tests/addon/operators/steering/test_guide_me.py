@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import bpy
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
@@ -22,14 +20,15 @@ from hiermatch.hiermatch_addon.storage.landmarks import (
 class Guided(guide_me.Guide):
     """The operator without Blender around it."""
 
-    def __init__(self):
+    def __init__(self, make_event):
+        self.make_event = make_event
         self.reports = []
 
     def report(self, kind, text):
         self.reports.append((*kind, text))
 
-    def press(self, key):
-        return self.modal(bpy.context, SimpleNamespace(type=key, value="PRESS", alt=False))
+    def press(self, key, **where):
+        return self.modal(bpy.context, self.make_event(key, **where))
 
     def click(self, obj, vertex):
         self._take(bpy.context, None if obj is None else Hit(obj, vertex))
@@ -44,10 +43,11 @@ def started(monkeypatch):
 
 
 @pytest.fixture
-def guide(pair, started):
+def guide(pair, started, press, over_viewport):
     assert pair
     assert started == []
-    guide = Guided()
+    assert over_viewport is None
+    guide = Guided(press)
     guide._wait_for(*pair)  # noqa: SLF001
     return guide
 
@@ -78,6 +78,15 @@ def test_any_place_can_be_left_out(guide, pair, started):
     assert not find_landmarks(*pair)
     assert not started
     assert "nothing new" in guide.reports[-1][1]
+
+
+@pytest.mark.parametrize(
+    ("key", "where"),
+    [("S", {"ctrl": True}), ("S", {"shift": True}), ("S", {"x": -5}), ("TAB", {}), ("SPACE", {}), ("RIGHT_ARROW", {})],
+)
+def test_other_keys_and_those_for_other_editors_are_left_to_blender(guide, key, where):
+    assert guide.press(key, **where) == {"PASS_THROUGH"}
+    assert guide._prompt().startswith("Nose (1 of 6)")  # noqa: SLF001
 
 
 def test_enter_matches_again_with_what_there_is(guide, pair, started):

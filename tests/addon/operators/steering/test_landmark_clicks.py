@@ -18,23 +18,24 @@ from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, clear_lan
 class Clicks(landmark_clicks.LandmarkClicks):
     """The operator without Blender around it."""
 
-    def __init__(self):
+    def __init__(self, make_event):
+        self.make_event = make_event
         self.reports = []
 
     def report(self, _kind, text):
         self.reports.append(text)
 
-    def event(self, kind, context=None):
-        event = SimpleNamespace(type=kind, value="PRESS", alt=False, mouse_x=5, mouse_y=5)
-        return self.modal(context or bpy.context, event)
+    def event(self, kind, **where):
+        return self.modal(bpy.context, self.make_event(kind, **where))
 
     def click(self, obj, vertex):
         self._take(bpy.context, Hit(obj, vertex))
 
 
 @pytest.fixture
-def clicks(pair):
-    clicks = Clicks()
+def clicks(pair, press, over_viewport):
+    assert over_viewport is None
+    clicks = Clicks(press)
     clicks._wait_for(*pair)  # noqa: SLF001
     return clicks
 
@@ -91,14 +92,14 @@ def test_a_landmark_that_is_moved_by_a_click_is_counted_once(clicks, pair):
     assert ends_of(find_landmarks(*pair)) == ends_of(clicks._made) == [(3, 9)]  # noqa: SLF001
 
 
-def test_only_one_waits_for_clicks_at_a_time(clicks, pair, monkeypatch):
+def test_only_one_waits_for_clicks_at_a_time(clicks, pair, press, monkeypatch):
     manager = SimpleNamespace(
         windows=[SimpleNamespace(modal_operators=[clicks], screen=SimpleNamespace(areas=[]))],
         modal_handler_add=lambda _operator: None,
     )
     clicks.bl_idname = "HIERMATCH_OT_pick_landmarks"
     monkeypatch.setattr(landmark_clicks, "window_manager_of", lambda _context: manager)
-    newer = Clicks()
+    newer = Clicks(press)
     assert newer.invoke(bpy.context, None) == {"RUNNING_MODAL"}
     assert clicks.event("MOUSEMOVE") == {"FINISHED", "PASS_THROUGH"}
     assert newer.event("MOUSEMOVE") == {"PASS_THROUGH"}
@@ -112,8 +113,21 @@ def test_nothing_waits_for_clicks_while_a_match_runs(clicks, monkeypatch):
     assert clicks.event("TIMER") == {"FINISHED", "PASS_THROUGH"}
 
 
-def test_a_click_in_another_mode_is_left_to_that_mode(clicks, pair, monkeypatch):
-    monkeypatch.setattr(landmark_clicks, "viewport_at", lambda *_: Viewport(None, None, None))
+@pytest.mark.parametrize(
+    ("kind", "where"), [("RIGHTMOUSE", {"x": -5}), ("RIGHTMOUSE", {"x": 900}), ("ESC", {"x": -5}), ("RET", {"x": -5})]
+)
+def test_what_is_meant_for_another_editor_or_a_sidebar_is_left_to_it(clicks, kind, where):
+    assert clicks.event(kind, **where) == {"PASS_THROUGH"}
+    assert clicks.event(kind) == {"FINISHED"}
+
+
+@pytest.mark.parametrize("kind", ["ESC", "RET"])
+def test_keys_are_taken_over_a_sidebar_too(clicks, kind):
+    """There the mouse is when it begins."""
+    assert clicks.event(kind, x=900) == {"FINISHED"}
+
+
+def test_a_click_in_another_mode_is_left_to_that_mode(clicks, pair):
     bpy.context.view_layer.objects.active = pair[0]
     bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
     try:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from hiermatch.hiermatch_addon.operators.steering.viewports import viewport_at
+from hiermatch.hiermatch_addon.operators.steering.viewports import is_in_viewport, viewport_at
 
 
 def region(kind, x, y, size, alignment="NONE"):
@@ -22,7 +22,9 @@ def context():
         region("HEADER", 0, 770, (1000, 30), "TOP"),
     ]
     space = SimpleNamespace(region_3d="the view", show_gizmo=True, show_gizmo_navigate=True)
-    area = SimpleNamespace(type="VIEW_3D", regions=regions, spaces=SimpleNamespace(active=space))
+    area = SimpleNamespace(
+        type="VIEW_3D", x=0, y=0, width=1000, height=800, regions=regions, spaces=SimpleNamespace(active=space)
+    )
     preferences = SimpleNamespace(
         system=SimpleNamespace(ui_scale=1.0), view=SimpleNamespace(gizmo_size_navigate_v3d=80)
     )
@@ -46,3 +48,12 @@ def test_what_lies_over_a_viewport(context, place, is_free):
     space = context.screen.areas[0].spaces.active
     space.show_gizmo_navigate = False
     assert (viewport_at(context, *place) is not None) == (place[0] < 800 and place[1] < 770)
+
+
+@pytest.mark.parametrize(
+    ("place", "is_in"), [((400, 400), True), ((900, 400), True), ((1000, 400), False), ((-5, 9), False)]
+)
+def test_what_belongs_to_a_viewport(context, place, is_in):
+    assert is_in_viewport(context, *place) == is_in
+    context.screen.areas[0].type = "OUTLINER"
+    assert not is_in_viewport(context, *place)
