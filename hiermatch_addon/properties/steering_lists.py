@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import bpy
 import numpy as np
 
 from ..common.errors import ObjectError
@@ -18,8 +19,6 @@ from ..storage.stored_match import StoredMatch
 from .panel_state import picked, summary_of
 
 if TYPE_CHECKING:
-    import bpy
-
     from ..scene.character import Side
     from ..storage.halves import Half
 
@@ -43,11 +42,8 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
     """Return what is picked, else that side of the last match, 0 for what is shown as its source."""
     summary = summary_of(scene)
     if chosen is not None:
-        try:
-            side = side_of(chosen, scene.view_layers[0])
-        except ObjectError:
-            return None
-        return side if parts_of(side)[0].type == "MESH" else None
+        sides = (_picked_side(chosen, layer) for layer in _view_layers(scene))
+        return next((side for side in sides if side is not None), None)
     if not summary.key:
         return None
     name, role = (summary.source, summary.target)[number], ("source", "target")[number != summary.swapped]
@@ -59,6 +55,22 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
     if named is None and len(found) == 1:  # it was renamed since
         return found[0].obj
     return called if named is None and called is not None and called.type == "MESH" else named
+
+
+def _picked_side(chosen: bpy.types.ID, view_layer: bpy.types.ViewLayer) -> Side | None:
+    """Return the meshes that are picked, as far as a view layer has them; None if it has none."""
+    try:
+        side = side_of(chosen, view_layer)
+    except ObjectError:
+        return None
+    return side if parts_of(side)[0].type == "MESH" else None
+
+
+def _view_layers(scene: bpy.types.Scene) -> list[bpy.types.ViewLayer]:
+    """Return the view layers of a scene, those first that windows show: this one, or, for a timer, any."""
+    context: Any = bpy.context
+    windows = filter(None, (context.window, *context.window_manager.windows))
+    return [*(window.view_layer for window in windows if window.scene == scene), *scene.view_layers]
 
 
 def common_match(scene: bpy.types.Scene, pair: tuple[Side, Side] | None = None) -> tuple[Half, Half] | None:
