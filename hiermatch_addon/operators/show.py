@@ -15,7 +15,7 @@ from ..common.errors import ObjectError
 from ..common.redraw import redraw_views
 from ..common.translated_text import translated
 from ..jobs.running import can_start
-from ..properties.steering_lists import common_match, steered_pair
+from ..properties.steering_lists import common_match
 from ..properties.steering_properties import steering_of
 from ..scene.character import parts_of
 from ..scene.pair import check_mode, check_writable
@@ -24,6 +24,7 @@ from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
+    from ..properties.steering_properties import HIERMATCH_PG_steering
     from ..storage.halves import Half
 
 __all__ = ["HIERMATCH_OT_show", "HIERMATCH_OT_write_regions"]
@@ -110,37 +111,48 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
 
 def _show(context: bpy.types.Context, halves: tuple[Half, Half], view: str) -> None:
     prepare_view(context, halves, view)
-    steering, shading = steering_of(context), _shading(context)
-    objects = [part for half in halves for part in parts_of(half.obj)]
-    if not steering.before:
-        steering.before = json.dumps(
-            {
-                "colors": [mesh_of(obj).attributes.active_color_name or "" for obj in objects],
-                "shading": [shading.type, shading.color_type] if shading else None,
-            }
-        )
-    name = attribute_of(halves[0].prefix, view)
-    show_attribute(objects, [name] * len(objects))
-    if shading:
-        shading.type = "SOLID"
-        shading.color_type = "VERTEX"
+    steering, here = steering_of(context), _shading(context.space_data)
+    before = _before(steering)
+    for mesh in (mesh_of(part) for half in halves for part in parts_of(half.obj)):
+        before["meshes"].setdefault(mesh.name, mesh.attributes.active_color_name or "")
+        show_attribute(mesh, attribute_of(halves[0].prefix, view))
+    for place, shading in _viewports().items():
+        if shading == here:
+            kind, shading.type = shading.type, "SOLID"
+            before["viewports"].setdefault(place, [kind, shading.color_type])
+            shading.color_type = "VERTEX"
+    steering.before = json.dumps(before)
 
 
 def _go_back(context: bpy.types.Context) -> None:
-    """Show what was shown before the first view."""
-    steering, shading = steering_of(context), _shading(context)
-    before: Any = json.loads(steering.before) if steering.before else {"colors": ["", ""], "shading": None}
-    if before["shading"] and shading:
-        shading.type = "SOLID"  # only there the other is as it was
-        shading.color_type = before["shading"][1]
-        shading.type = before["shading"][0]
-    pair = steered_pair(cast("bpy.types.Scene", context.scene))
-    if pair is not None:
-        show_attribute([part for side in pair for part in parts_of(side)], before["colors"])
+    """Show what was shown before the first view, of all meshes and in all viewports that show one since."""
+    steering, viewports = steering_of(context), _viewports()
+    before = _before(steering)
+    for name, color in before["meshes"].items():
+        mesh = bpy.data.meshes.get(name)
+        if mesh is not None and mesh.library is None:
+            show_attribute(mesh, color)
+    for place, (kind, color) in before["viewports"].items():
+        shading = viewports.get(place)
+        if shading is not None and (shading.type, shading.color_type) == ("SOLID", "VERTEX"):
+            shading.color_type = color
+            shading.type = kind
     steering.before = ""
 
 
-def _shading(context: bpy.types.Context) -> Any:  # noqa: ANN401 - one viewport's shading, or None
-    """Return how the viewport is shaded that the operator is called from; None if it is no viewport."""
-    space: Any = context.space_data
-    return space.shading if space is not None and space.type == "VIEW_3D" else None
+def _before(steering: HIERMATCH_PG_steering) -> dict[str, dict[str, Any]]:
+    """Return the color attributes that meshes showed before, and how viewports were shaded, by names and places."""
+    before: dict[str, Any] = json.loads(steering.before or "{}")
+    return {kind: before.get(kind, {}) for kind in ("meshes", "viewports")}
+
+
+def _viewports() -> dict[str, Any]:
+    """Return how the viewports of all screens are shaded, by where they are."""
+    areas = ((screen, number, area) for screen in bpy.data.screens for number, area in enumerate(screen.areas))
+    found = {f"{screen.name}/{number}": _shading(area.spaces.active) for screen, number, area in areas}
+    return {place: shading for place, shading in found.items() if shading is not None}
+
+
+def _shading(space: bpy.types.Space | None) -> Any:  # noqa: ANN401 - one viewport's shading, or None
+    """Return how a viewport is shaded; None if it is no viewport."""
+    return cast("Any", space).shading if space is not None and space.type == "VIEW_3D" else None

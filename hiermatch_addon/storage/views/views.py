@@ -19,8 +19,6 @@ from . import colors
 from .view_colors import check_size, checked, overlap_colors, region_colors
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import bpy
     from numpy.typing import NDArray
 
@@ -95,13 +93,11 @@ def prepare_view(context: bpy.types.Context, halves: tuple[Half, Half], view: st
             )
 
 
-def show_attribute(objects: Sequence[bpy.types.Object], names: Sequence[str]) -> None:
-    """Make color attributes the active ones of meshes, as far as they exist."""
-    for obj, name in zip(objects, names, strict=False):
-        mesh = mesh_of(obj)
-        if name in mesh.color_attributes:
-            mesh.attributes.active_color_name = name
-            mesh.update()
+def show_attribute(mesh: bpy.types.Mesh, name: str) -> None:
+    """Make a color attribute the active one of a mesh, if it exists."""
+    if name in mesh.color_attributes:
+        mesh.attributes.active_color_name = name
+        mesh.update()
 
 
 def region_groups(context: bpy.types.Context, halves: tuple[Half, Half]) -> int:

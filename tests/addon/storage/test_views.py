@@ -85,6 +85,43 @@ class TestViews:
         show("NONE")
         assert active(dense_pair) == before
 
+    def test_back_after_another_pair_was_picked(self, dense_pair):
+        others = [obj.copy() for obj in dense_pair]
+        for obj, other in zip(dense_pair, others, strict=True):
+            other.data = obj.data.copy()
+            bpy.context.collection.objects.link(other)
+            for one, name in ((obj, "Own"), (other, "Other")):
+                for each in ("Own", "Other"):
+                    one.data.attributes.new(each, "FLOAT_COLOR", "POINT")
+                one.data.attributes.active_color_name = name
+        show("CHECKER")
+        state = bpy.context.scene.hiermatch
+        state.source, state.target = others
+        dense_pair[0].name = "Renamed"
+        show("NONE")
+        assert active(dense_pair) == ["Own"] * 2
+        assert active(others) == ["Other"] * 2
+
+    @pytest.mark.usefixtures("dense_pair")
+    def test_each_viewport_goes_back_to_what_it_was(self):
+        areas = bpy.context.screen.areas[:2]
+        for area in areas:
+            area.type = "VIEW_3D"
+        spaces = [area.spaces.active for area in areas]
+        for space, (kind, color) in zip(spaces, (("MATERIAL", "OBJECT"), ("WIREFRAME", "RANDOM")), strict=True):
+            space.shading.type = "SOLID"
+            space.shading.color_type = color
+            space.shading.type = kind
+        with bpy.context.temp_override(area=areas[0], space_data=spaces[0]):
+            show("MATCH")
+        assert (spaces[0].shading.type, spaces[0].shading.color_type) == ("SOLID", "VERTEX")
+        with bpy.context.temp_override(area=areas[1], space_data=spaces[1]):
+            show("NONE")
+        assert [space.shading.type for space in spaces] == ["MATERIAL", "WIREFRAME"]
+        for space in spaces:
+            space.shading.type = "SOLID"
+        assert [space.shading.color_type for space in spaces] == ["OBJECT", "RANDOM"]
+
     def test_the_viewport(self, dense_pair):
         assert dense_pair
         area = next((area for area in bpy.context.screen.areas if area.type == "VIEW_3D"), None)
