@@ -10,6 +10,7 @@ import bpy
 
 from ...engine import HierMatchError
 from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..jobs.running import can_start
 from ..properties.panel_state import picked, state_of
@@ -58,9 +59,8 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Remove it."""
         try:
-            objects = [obj for obj in self._objects(context) if self._prefixes(obj) or self._linked(obj)]
-            for obj in objects:
-                check_writable(obj)
+            carriers = [obj for obj in self._objects(context) if self._prefixes(obj) or self._linked(obj)]
+            objects, reasons = _writable(carriers)
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))
             return {"CANCELLED"}
@@ -74,6 +74,8 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
                 clear(obj, prefix)
             for prefix in self._linked(obj):
                 forget_linked(obj, prefix)
+        for reason in reasons:
+            self.report({"WARNING"}, translated(reason))
         names = [obj.name for obj in objects]
         if (summary.prefix, summary.key) in cleared:
             state_of(context).property_unset("summary")
@@ -98,3 +100,24 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     def _linked(self, obj: bpy.types.Object) -> tuple[str, ...]:
         """Return which of the matches with sources of other files are to go."""
         return tuple(prefix for prefix in linked_prefixes(obj) if self.prefix in ("", prefix))
+
+
+def _writable(carriers: list[bpy.types.Object]) -> tuple[list[bpy.types.Object], list[str]]:
+    """Return those objects that can be written to, and why others cannot.
+
+    Raises
+    ------
+    ObjectError
+        If none can.
+    """
+    objects, reasons = [], []
+    for obj in carriers:
+        try:
+            check_writable(obj)
+        except ObjectError as error:
+            reasons.append(str(error))
+        else:
+            objects.append(obj)
+    if reasons and not objects:
+        raise ObjectError(reasons[0])
+    return objects, reasons

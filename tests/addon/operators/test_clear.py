@@ -93,6 +93,26 @@ def test_says_why_it_cannot(pair):
         bpy.ops.hiermatch.clear(object="Nobody")
 
 
+def test_what_is_linked_is_left_out_and_named(pair, tmp_path, capfd):
+    match()
+    path = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path, copy=True)
+    bpy.data.objects.remove(pair[0])
+    bpy.data.meshes.remove(bpy.data.meshes["Source"])
+    with bpy.data.libraries.load(path, link=True) as (_, into):
+        into.objects = ["Source"]
+    source = bpy.data.objects["Source"]
+    bpy.context.collection.objects.link(source)
+    state = bpy.context.scene.hiermatch
+    state.source, state.target = source, pair[1]
+    with pytest.raises(RuntimeError, match=r'"Source" is linked from "library\.blend"'):
+        bpy.ops.hiermatch.clear(object="Source")
+    assert bpy.ops.hiermatch.clear() == {"FINISHED"}
+    assert not pair[1].vertex_groups
+    assert 'Warning: "Source" is linked from "library.blend"' in capfd.readouterr().out
+    assert len(source.vertex_groups) == QUICK["points"]
+
+
 def test_one_undo_brings_it_back(pair):
     match()
     after = snapshot()
