@@ -102,8 +102,23 @@ def named_side(view_layer: bpy.types.ViewLayer, name: str) -> Side:
         return side_of(bpy.data.objects[name], view_layer)
     if name in bpy.data.collections:
         return side_of(bpy.data.collections[name], view_layer)
-    sides = [side_of(named_object(one), view_layer) for one in name.split(_PLUS)]
+    sides = [side_of(obj, view_layer) for obj in _listed_objects(name.split(_PLUS))]
     return joined(sides[0].name, [part for side in sides for part in parts_of(side)])
+
+
+def _listed_objects(pieces: Sequence[str]) -> list[bpy.types.Object]:
+    """Return the objects whose names, one after the other, were split up; a name of several pieces goes before others.
+
+    Raises
+    ------
+    ObjectError
+        If there is none of a name.
+    """
+    for count in range(len(pieces), 0, -1):
+        obj = bpy.data.objects.get(_PLUS.join(pieces[:count]))
+        if obj is not None:
+            return [obj, *_listed_objects(pieces[count:])]
+    return [named_object(pieces[0])] if pieces else []
 
 
 def name_of(view_layer: bpy.types.ViewLayer, side: Side) -> str:

@@ -95,6 +95,15 @@ class TestWhatIsMeant:
         assert parts_of(named_side(layer(), name_of(layer(), side))) == side.parts
         assert name_of(layer(), side_of(armature, layer())) == armature.name
 
+    @pytest.mark.parametrize(
+        "names", [("Body + Hair", "Eyes"), ("Body", "Eyes + Hair"), ("Body + Hair", "Eyes + Ears")]
+    )
+    def test_also_if_their_names_look_like_several(self, names):
+        side = joined("Hero", [add_blob(name) for name in names])
+        assert parts_of(named_side(layer(), name_of(layer(), side))) == side.parts
+        with pytest.raises(ObjectError, match='no object called "Nobody"'):
+            named_side(layer(), f"{names[0]} + Nobody")
+
     def test_what_is_hidden_or_has_no_faces_is_no_part(self, cut):
         parts, armature = cut
         parts[0].hide_set(state=True)
