@@ -96,7 +96,7 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
     swap.operator("hiermatch.swap", text="", icon="UV_SYNC_SELECT")
     chosen = sum(one is not None for one in picked(state))
     if chosen < 2:
-        selected = sum(obj.type in ("MESH", "ARMATURE") for obj in view_layer_of(context).objects.selected)
+        selected = sum(obj.type in ("MESH", "ARMATURE", "EMPTY") for obj in view_layer_of(context).objects.selected)
         if selected + chosen < 2:
             draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
             if not state.summary.points:

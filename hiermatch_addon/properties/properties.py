@@ -214,7 +214,7 @@ def copy_options(source: MatchOptions, target: MatchOptions) -> None:
 
 
 def _is_pickable(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
-    return obj.type in ("MESH", "ARMATURE")
+    return obj.type in ("MESH", "ARMATURE", "EMPTY")
 
 
 def _on_pick(owner: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
@@ -283,15 +283,16 @@ class HIERMATCH_PG_scene(MatchOptions, bpy.types.PropertyGroup):
 
     source: _props.PointerProperty(
         name="Source",
-        description="Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active",
+        description="Mesh that is matched, or an armature or an empty with all meshes that hang on it; if nothing is "
+        "picked, what is active",
         type=bpy.types.Object,
         poll=_is_pickable,
         update=_on_pick,
     )
     target: _props.PointerProperty(
         name="Target",
-        description="Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if "
-        "empty, what else is selected",
+        description="Mesh that corresponding points are sought on, or an armature or an empty with all meshes that "
+        "hang on it; if nothing is picked, what else is selected",
         type=bpy.types.Object,
         poll=_is_pickable,
         update=_on_pick,

@@ -73,13 +73,20 @@ MESSAGES: Final[dict[str, str]] = {
     "By what the two meshes are recognised as the pair of this match": (
         "二つのメッシュがこのマッチングのペアだと識別するためのもの"
     ),
-    "Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active": (
-        "マッチするメッシュ、またはアーマチュアとそれが動かすすべてのメッシュ。空ならアクティブなもの"
+    (
+        "Mesh that is matched, or an armature or an empty with all meshes that hang on it; if nothing is picked, what "
+        "is active"
+    ): (
+        "マッチするメッシュ、またはアーマチュアかエンプティとそれに付くすべてのメッシュ。何も指定されていなければア"
+        "クティブなもの"
     ),
     (
-        "Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if empty, what "
-        "else is selected"
-    ): ("対応するポイントを探すメッシュ、またはアーマチュアとそれが動かすすべてのメッシュ。空なら選択中のほかのもの"),
+        "Mesh that corresponding points are sought on, or an armature or an empty with all meshes that hang on it; if "
+        "nothing is picked, what else is selected"
+    ): (
+        "対応するポイントを探すメッシュ、またはアーマチュアかエンプティとそれに付くすべてのメッシュ。何も指定されて"
+        "いなければ選択中のほかのもの"
+    ),
     "Source Collection": "ソースコレクション",
     "Target Collection": "ターゲットコレクション",
     "Collection whose meshes are the source together, if no object is picked": (

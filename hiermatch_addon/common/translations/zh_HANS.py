@@ -57,13 +57,14 @@ MESSAGES: Final[dict[str, str]] = {
     "What the names of everything that was written start with": "所有写入内容的名称开头",
     "Key": "键",
     "By what the two meshes are recognised as the pair of this match": "用来识别这两个网格属于此匹配的标识",
-    "Mesh that is matched, or an armature with all meshes that it moves; if empty, what is active": (
-        "要匹配的网格，或骨架及其驱动的所有网格；为空时使用活动的物体"
-    ),
     (
-        "Mesh that corresponding points are sought on, or an armature with all meshes that it moves; if empty, what "
-        "else is selected"
-    ): "在其上寻找对应点的网格，或骨架及其驱动的所有网格；为空时使用其余选中的物体",
+        "Mesh that is matched, or an armature or an empty with all meshes that hang on it; if nothing is picked, what "
+        "is active"
+    ): "要匹配的网格，或骨架或空物体及其下的所有网格；未选取时使用活动的物体",
+    (
+        "Mesh that corresponding points are sought on, or an armature or an empty with all meshes that hang on it; if "
+        "nothing is picked, what else is selected"
+    ): "在其上寻找对应点的网格，或骨架或空物体及其下的所有网格；未选取时使用其余选中的物体",
     "Source Collection": "源集合",
     "Target Collection": "目标集合",
     "Collection whose meshes are the source together, if no object is picked": (

@@ -184,6 +184,12 @@ def test_it_says_what_to_do_until_there_are_two_meshes(context):
         obj.select_set(state=True)
     assert "Pick two meshes" not in texts(draw(context))
     bpy.ops.object.select_all(action="DESELECT")
+    for _ in pair:
+        empty = bpy.data.objects.new("Above", None)
+        bpy.context.collection.objects.link(empty)
+        empty.select_set(state=True)
+    assert "Pick two meshes" not in texts(draw(context))
+    bpy.ops.object.select_all(action="DESELECT")
     context.scene.hiermatch.source, context.scene.hiermatch.target = pair
     assert "Pick two meshes" not in texts(draw(context))
 
