@@ -31,7 +31,10 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
 
     bl_idname = "hiermatch.clear"
     bl_label = "Clear"
-    bl_description = "Remove what HierMatch has written on Source, Target and the selected meshes, and nothing else"
+    bl_description = (
+        "Remove what matches have written on Source, Target and the selected meshes; landmarks and what was carried "
+        "over stay"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     object: bpy.props.StringProperty(

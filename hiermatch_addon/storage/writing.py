@@ -114,7 +114,7 @@ def write(sides: Sequence[tuple[Side, Content]], prefix: str, *, show: bool = Tr
 
 
 def extend(side: Side, content: Content, prefix: str) -> None:
-    """Write more beside what a match has written with a prefix, in place of what has the same names.
+    """Write more beside what a match has written with a prefix, if any, in place of what has the same names.
 
     It is recorded with the rest and goes with it.  What is active stays so.
     """
@@ -129,7 +129,10 @@ def _extend(obj: bpy.types.Object, content: Content, prefix: str) -> None:
     _remove(obj, kinds)
     _take_names(obj, kinds)
     records = _records(mesh)
-    records[prefix]["written"] |= kinds
+    record = records.setdefault(
+        prefix, {"written": {}, "color": active.color, "render_color": active.render_color, "kept": {}}
+    )
+    record["written"] |= kinds
     _set_records(mesh, records)
     active.restore(obj)
     mesh.update()

@@ -15,9 +15,10 @@ from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
 from ..common.side_names import flipped_name
 from ..jobs.transfer import Transfer, TransferReport
-from ..scene import mesh_io
 from ..scene.character import parts_of, vertex_ranges
 from ..scene.deform_layer import check_weights_writable, read_group
+from ..storage import writing
+from ..storage.contents import Content
 from ..storage.written_names import written_names
 from .weight_groups import chosen_groups, deforming_bones, group_columns, group_names, locked_groups, write_groups
 
@@ -215,14 +216,11 @@ class WeightTransfer(Transfer):
     def _write_mark(self, target: Side) -> None:
         """Write and show the color attribute."""
         colors = np.where(self._torn[:, None], _TORN, _WHOLE).astype(np.float32)
-        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
+        writing.extend(target, Content(colors={self._mark_name: colors}), self._settings.prefix)
+        for part in parts_of(target):
             attributes = mesh_of(part).attributes
-            rendered, old = attributes.default_color_name, attributes.get(self._mark_name)
-            if old is not None:
-                attributes.remove(old)
-            mesh_io.add_colors(mesh_of(part), self._mark_name, colors[own])
             attributes.active_color_name = self._mark_name
-            attributes.default_color_name = rendered or self._mark_name
+            attributes.default_color_name = attributes.default_color_name or self._mark_name
 
 
 def _said_of_pieces(obj: bpy.types.Object, name: str) -> NDArray[np.int8]:

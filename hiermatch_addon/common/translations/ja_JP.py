@@ -391,8 +391,12 @@ MESSAGES: Final[dict[str, str]] = {
         "ソースとターゲットを入れ替えます。両者が持つマッチングは、密なマップも含めて逆向きに使われます"
     ),
     "Clear": "クリア",
-    "Remove what HierMatch has written on Source, Target and the selected meshes, and nothing else": (
-        "HierMatchがソース、ターゲット、選択中のメッシュに書き込んだものだけを削除します"
+    (
+        "Remove what matches have written on Source, Target and the selected meshes; landmarks and what was carried "
+        "over stay"
+    ): (
+        "マッチングがソース、ターゲット、選択中のメッシュに書き込んだものを削除します。ランドマークと転送されたもの"
+        "は残ります"
     ),
     "Name of the object to clear; if empty, the picked Source and Target and all selected meshes": (
         "クリアするオブジェクトの名前。空なら選んだソースとターゲット、および選択中のすべてのメッシュ"

@@ -328,9 +328,10 @@ MESSAGES: Final[dict[str, str]] = {
         "互换源与目标；两者所带的匹配及其稠密映射随之反向使用"
     ),
     "Clear": "清空",
-    "Remove what HierMatch has written on Source, Target and the selected meshes, and nothing else": (
-        "移除 HierMatch 在源、目标和选中网格上写入的内容，不影响其他内容"
-    ),
+    (
+        "Remove what matches have written on Source, Target and the selected meshes; landmarks and what was carried "
+        "over stay"
+    ): "移除匹配在源、目标和选中网格上写入的内容；地标和已传递的内容会保留",
     "Name of the object to clear; if empty, the picked Source and Target and all selected meshes": (
         "要清空的物体名称；为空时为选取的源和目标以及所有选中的网格"
     ),

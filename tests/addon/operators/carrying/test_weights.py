@@ -252,6 +252,16 @@ def test_torn_vertices_are_filled_in_marked_and_told(pair):
     assert len(target.data.color_attributes) == 1
 
 
+def test_clear_takes_the_mark_away_and_shows_what_was_shown_before(pair):
+    source, target = pair
+    target.data.color_attributes.new("Own", "BYTE_COLOR", "CORNER")
+    carry(source, target, mark=True)
+    assert "HM Rejected" in target.data.attributes
+    assert bpy.ops.hiermatch.clear(object=target.name) == {"FINISHED"}
+    assert target.data.color_attributes.keys() == ["Own"]
+    assert target.data.attributes.active_color_name == "Own"
+
+
 def test_without_filling_the_map_is_believed(pair):
     source, target = pair
     passage, astray = torn_passage(source, target)
