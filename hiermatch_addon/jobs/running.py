@@ -10,7 +10,7 @@ import bpy
 from ..common.access import window_manager_of
 from ..common.translated_text import translated
 
-__all__ = ["can_start", "is_running", "running_panel", "start_soon"]
+__all__ = ["can_start", "is_idle", "is_running", "running_panel", "start_soon"]
 
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
@@ -48,13 +48,20 @@ def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> Non
     bpy.app.timers.register(start, first_interval=0.0)
 
 
+def is_idle(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Tell, and say on the disabled button, whether no job of ours is running."""
+    if is_running(window_manager_of(context)):
+        cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
+        return False
+    return True
+
+
 def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context, *, posing: bool = False) -> bool:
     """Tell, and say on the disabled button, whether an operator that writes on objects may start.
 
     One that is about armatures may do so while they are posed, too.
     """
-    if is_running(window_manager_of(context)):
-        cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
+    if not is_idle(cls, context):
         return False
     if context.mode not in (("OBJECT", "POSE") if posing else ("OBJECT",)):
         cls.poll_message_set(translated("Switch to Object Mode first"))

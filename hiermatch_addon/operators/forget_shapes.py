@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..common.access import window_manager_of
 from ..common.translated_text import translated
 from ..jobs.prepared_shapes import forget_shapes
-from ..jobs.running import is_running
+from ..jobs.running import is_idle
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -31,10 +30,7 @@ class HIERMATCH_OT_forget_shapes(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it while nothing runs."""
-        if is_running(window_manager_of(context)):
-            cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
-            return False
-        return True
+        return is_idle(cls, context)
 
     def execute(self, _context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Forget them."""

@@ -8,9 +8,8 @@ from typing import cast
 
 import bpy
 
-from ...common.access import window_manager_of
 from ...common.errors import ObjectError
-from ...jobs.running import is_running
+from ...jobs.running import is_idle
 from ...properties.bone_pairs import add_row, bone_pairs_of, clear_rows, rows_of
 from ...scene.motion.rigs import rig_of
 from ...transfers.retarget_properties import retarget_of
@@ -25,7 +24,7 @@ class PairEditor(PairOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it when nothing else is running."""
-        return not is_running(window_manager_of(context))
+        return is_idle(cast("type[bpy.types.Operator]", cls), context)
 
     def _sides(self, context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object]:
         source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, cast
 import bpy
 
 from ....engine import HierMatchError
-from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.translated_text import translated
-from ...jobs.running import is_running
+from ...jobs.running import can_start
 from ...scene.motion.rigs import check_armature, rig_of
 from ...transfers.motion.bone_names import names_by_source, names_by_table, rename_bones
 from ..checking.rig_operator import meant_target
@@ -81,7 +80,7 @@ class HIERMATCH_OT_rename_bones(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode and Pose Mode, when nothing else is running."""
-        return context.mode in {"OBJECT", "POSE"} and not is_running(window_manager_of(context))
+        return can_start(cls, context, posing=True)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Rename, and report."""

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
-from ...jobs.running import is_running
+from ...jobs.running import is_idle
 from ...properties.panel_state import pick, picked, state_of
 from ...properties.steering_lists import sync_lists
 from ...scene.character import Character, parts_of
@@ -80,8 +79,7 @@ class LandmarkOperator(PairOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object and in Edit Mode, when nothing else is running."""
         operator = cast("type[bpy.types.Operator]", cls)
-        if is_running(window_manager_of(context)):
-            operator.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
+        if not is_idle(operator, context):
             return False
         if context.mode not in ("OBJECT", "EDIT_MESH"):
             operator.poll_message_set(translated("Switch to Object Mode or to Edit Mode first"))

@@ -5,7 +5,7 @@ import json
 
 import bpy
 import pytest
-from hiermatch.hiermatch_addon.jobs import match_job
+from hiermatch.hiermatch_addon.jobs import match_job, running
 
 from tests.addon.characters import add_person, match_at_once, someone
 
@@ -176,3 +176,10 @@ def test_it_is_offered_while_an_armature_is_posed():
     assert ops.pair_bones(source="A", target="B") == {"FINISHED"}
     assert table()
     bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.parametrize("name", [f"{what}_bone_pair" for what in ("add", "remove")] + ["clear_bone_pairs"])
+def test_while_something_runs_buttons_say_so(monkeypatch, name):
+    monkeypatch.setattr(running, "running_panel", lambda _manager: "HIERMATCH_PT_match")
+    with pytest.raises(RuntimeError, match="HierMatch is at work"):
+        getattr(ops, name)()

@@ -164,3 +164,12 @@ def test_what_is_no_person_is_said():
     bpy.ops.object.mode_set(mode="OBJECT")
     with pytest.raises(RuntimeError, match="does not stand on two legs"):
         rename(target="Snake")
+
+
+def test_it_says_which_mode_it_waits_for():
+    bpy.context.view_layer.objects.active = add_person("B")[0]
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError, match="Switch to Object Mode first"):
+        rename(target="B")
+    bpy.ops.object.mode_set(mode="POSE")
+    assert rename.poll()
