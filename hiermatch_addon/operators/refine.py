@@ -14,7 +14,7 @@ from ..jobs.refining import RefineJob
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
-from ..properties.steering_lists import common_match
+from ..properties.steering_lists import check_steered, common_match
 from ..properties.summary import remember
 
 if TYPE_CHECKING:
@@ -50,8 +50,10 @@ class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
         state = state_of(context)
         if not state.use_landmarks:
             raise ObjectError("Use Landmarks is off, so there is nothing to refine around. Turn it on under Options.")
-        halves = common_match(cast("bpy.types.Scene", context.scene))
+        scene = cast("bpy.types.Scene", context.scene)
+        halves = common_match(scene)
         if halves is None:
+            check_steered(scene)
             raise ObjectError("There is no match to refine. Pick two meshes as Source and Target, and match them.")
         return RefineJob(context, halves, (state.exclude_source, state.exclude_target))
 

@@ -15,7 +15,7 @@ from ..common.errors import ObjectError
 from ..common.redraw import redraw_views
 from ..common.translated_text import translated
 from ..jobs.running import can_start
-from ..properties.steering_lists import common_match
+from ..properties.steering_lists import check_steered, common_match
 from ..properties.steering_properties import steering_of
 from ..scene.character import parts_of
 from ..scene.pair import check_mode, check_writable
@@ -38,8 +38,10 @@ def _match_of(context: bpy.types.Context) -> tuple[Half, Half]:
     ObjectError
         If there is none, or its meshes cannot be written to.
     """
-    halves = common_match(cast("bpy.types.Scene", context.scene))
+    scene = cast("bpy.types.Scene", context.scene)
+    halves = common_match(scene)
     if halves is None:
+        check_steered(scene)
         raise ObjectError("There is no match to show. Pick two meshes as Source and Target, and match them.")
     for half in halves:
         for part in parts_of(half.obj):

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, side_of
+from ..scene.pair import is_own
 from ..storage.halves import find_carriers, find_common
 from ..storage.landmarks import find_landmarks
 from ..storage.stored_match import StoredMatch
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.halves import Half
 
-__all__ = ["common_match", "landmark_label", "pair_rows", "point_name", "steered_pair", "sync_lists"]
+__all__ = ["check_steered", "common_match", "landmark_label", "pair_rows", "point_name", "steered_pair", "sync_lists"]
 
 
 _REVISIONS = 1 << 30
@@ -86,6 +87,22 @@ def common_match(scene: bpy.types.Scene, pair: tuple[Side, Side] | None = None) 
     return max(
         found, key=lambda halves: (halves[0].key == summary.key, halves[0].prefix == summary.prefix), default=None
     )
+
+
+def check_steered(scene: bpy.types.Scene) -> None:
+    """Make sure that matches of the two sides that a scene's panels are about can be shown and refined.
+
+    Raises
+    ------
+    ObjectError
+        If one is another file's: only the other one keeps such matches, see `keep_linked`.
+    """
+    for side in steered_pair(scene) or ():
+        if not is_own(side):
+            raise ObjectError(
+                f'"{side.name}" is linked from another file, so its matches cannot be shown or refined. Make object '
+                "and data local first (Object > Relations > Make Local)."
+            )
 
 
 def point_name(prefix: str, number: int) -> str:

@@ -417,12 +417,12 @@ def check_writable(obj: bpy.types.Object) -> None:
     if library is not None:
         raise ObjectError(
             f'"{obj.name}" is linked from "{library.name}" and cannot be written to. Make object and data local '
-            "first (Object > Relations > Make Local)."
+            "first (Object > Relations > Make Local). As the Source of Retarget, Wear and Motion it can stay as it is."
         )
     if obj.override_library is not None or mesh.override_library is not None:
         raise ObjectError(
             f'"{obj.name}" is a library override and cannot be written to. Make object and data local first '
-            "(Object > Relations > Make Local)."
+            "(Object > Relations > Make Local). As the Source of Retarget, Wear and Motion it can stay as it is."
         )
 
 

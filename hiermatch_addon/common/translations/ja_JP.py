@@ -1481,6 +1481,13 @@ MESSAGES: Final[dict[str, str]] = {
     "One of the two meshes was deleted. Press Esc and start again.": (
         "二つのメッシュの一方が削除されました。Escを押してやり直してください。"
     ),
+    (
+        '"{0}" is linked from another file, so its matches cannot be shown or refined. Make object and data local '
+        "first (Object > Relations > Make Local)."
+    ): (
+        "「{0}」は他のファイルからリンクされているため、そのマッチングは表示も改良もできません。先にオブジェクトと"
+        "データをローカル化してください（オブジェクト > 関係 > ローカル化）。"
+    ),
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "改良するマッチングがありません。二つのメッシュをソースとターゲットに選び、マッチングしてください。"
     ),
@@ -2082,17 +2089,19 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     (
         '"{0}" is linked from "{1}" and cannot be written to. Make object and data local first (Object > '
-        "Relations > Make Local)."
+        "Relations > Make Local). As the Source of Retarget, Wear and Motion it can stay as it is."
     ): (
         "「{0}」は「{1}」からリンクされており、書き込めません。先にオブジェクトとデータをローカル化してくださ"
-        "い（オブジェクト > 関係 > ローカル化）。"
+        "い（オブジェクト > 関係 > ローカル化）。リターゲット、着せる、モーションのソースとしてはそのままで使え"
+        "ます。"
     ),
     (
         '"{0}" is a library override and cannot be written to. Make object and data local first (Object > '
-        "Relations > Make Local)."
+        "Relations > Make Local). As the Source of Retarget, Wear and Motion it can stay as it is."
     ): (
         "「{0}」はライブラリオーバーライドで、書き込めません。先にオブジェクトとデータをローカル化してくださ"
-        "い（オブジェクト > 関係 > ローカル化）。"
+        "い（オブジェクト > 関係 > ローカル化）。リターゲット、着せる、モーションのソースとしてはそのままで使え"
+        "ます。"
     ),
     (
         '"{0}" has no surface: each of its faces uses a vertex twice. Repair the mesh (in Edit Mode: Mesh > '

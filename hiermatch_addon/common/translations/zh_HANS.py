@@ -1219,6 +1219,10 @@ MESSAGES: Final[dict[str, str]] = {
         "first."
     ): ("“{0}”的该处是由镜像修改器显示的。请点击网格本身的那一半，或先应用该修改器。"),
     "One of the two meshes was deleted. Press Esc and start again.": "两个网格之一被删除。请按 Esc 后重新开始。",
+    (
+        '"{0}" is linked from another file, so its matches cannot be shown or refined. Make object and data local '
+        "first (Object > Relations > Make Local)."
+    ): "“{0}”链接自其他文件，因此其匹配无法显示或改善。请先将物体和数据本地化（物体 > 关系 > 本地化）。",
     "There is no match to refine. Pick two meshes as Source and Target, and match them.": (
         "没有可改善的匹配。请选取两个网格作为源和目标并进行匹配。"
     ),
@@ -1727,12 +1731,18 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     (
         '"{0}" is linked from "{1}" and cannot be written to. Make object and data local first (Object > '
-        "Relations > Make Local)."
-    ): "“{0}”链接自“{1}”，无法写入。请先将物体和数据本地化（物体 > 关系 > 本地化）。",
+        "Relations > Make Local). As the Source of Retarget, Wear and Motion it can stay as it is."
+    ): (
+        "“{0}”链接自“{1}”，无法写入。请先将物体和数据本地化（物体 > 关系 > 本地化）。作为重定向、穿戴和运动的源时可以"
+        "保持原样。"
+    ),
     (
         '"{0}" is a library override and cannot be written to. Make object and data local first (Object > '
-        "Relations > Make Local)."
-    ): "“{0}”是库重写，无法写入。请先将物体和数据本地化（物体 > 关系 > 本地化）。",
+        "Relations > Make Local). As the Source of Retarget, Wear and Motion it can stay as it is."
+    ): (
+        "“{0}”是库重写，无法写入。请先将物体和数据本地化（物体 > 关系 > 本地化）。作为重定向、穿戴和运动的源时可以保"
+        "持原样。"
+    ),
     (
         '"{0}" has no surface: each of its faces uses a vertex twice. Repair the mesh (in Edit Mode: Mesh > '
         "Clean Up > Degenerate Dissolve)."

@@ -243,8 +243,13 @@ def test_a_linked_source_is_carried_from_and_the_target_keeps_the_match(linked_s
     assert bpy.ops.hiermatch.transfer_weights(source="Source", target="Target", refine=False) == {"FINISHED"}
     assert weight_error(source, target) < 0.3
     assert not target.data.attributes.get("HM Map Weights")
-    with pytest.raises(RuntimeError, match="is linked from"):
+    with pytest.raises(RuntimeError, match=r"is linked from.*As the Source of Retarget, Wear and Motion it can stay"):
         bpy.ops.hiermatch.match(source="Source", target="Target")
+    state = bpy.context.scene.hiermatch
+    state.source, state.target = source, target
+    for operator in (bpy.ops.hiermatch.show, bpy.ops.hiermatch.write_regions, bpy.ops.hiermatch.refine):
+        with pytest.raises(RuntimeError, match=r'"Source" is linked.*its matches cannot be shown or refined'):
+            operator()
     # It is used by whatever is carried next, also in another session, until a mesh is edited.
     count = []
     real = match_job.match_steps
