@@ -42,6 +42,7 @@ from ..scene.character import (
     vertex_ranges,
 )
 from ..scene.material_slots import assign_materials, read_materials
+from ..scene.shape_key_io import linear_part
 from .attribute_choice import SEAMS, choose_attributes, taken_note
 
 if TYPE_CHECKING:
@@ -101,9 +102,9 @@ class AttributeTransfer(Transfer):
             self._materials = numbers if any(materials) else None  # faces keep theirs where nothing comes instead
         if self._settings.normals and any(mesh.has_custom_normals for mesh in meshes):
             self._normals = np.concatenate(
-                [read_corner_normals(mesh_of(part), _linear_part(context, part)) for part in parts_of(source)]
+                [read_corner_normals(mesh_of(part), linear_part(context, part)) for part in parts_of(source)]
             )
-            self._to_local = [_linear_part(context, part) for part in parts_of(target)]
+            self._to_local = [linear_part(context, part) for part in parts_of(target)]
         if not self._values and self._materials is None and self._normals is None and not self._notes:
             raise NothingToCarryError(
                 f'"{source.name}" has nothing of what is to be carried over: no such attributes, materials, marked '
@@ -236,9 +237,3 @@ def _read_materials(side: Side) -> tuple[list[bpy.types.Material | None], NDArra
             places.append(materials.index(material))
         numbers.append(np.array(places, np.int64)[slots])
     return materials, np.concatenate(numbers)
-
-
-def _linear_part(context: bpy.types.Context, obj: bpy.types.Object) -> NDArray[np.float64]:
-    """Matrix (3, 3) that takes directions from an object's own space to the world's."""
-    evaluated = obj.evaluated_get(context.evaluated_depsgraph_get())
-    return np.array(evaluated.matrix_world, dtype=np.float64)[:3, :3]
