@@ -10,6 +10,7 @@ import numpy as np
 
 from ...engine import Polygons
 from ..common.access import mesh_of
+from .mesh_io import corner_vertices, face_corner_counts
 
 if TYPE_CHECKING:
     import bpy
@@ -137,10 +138,6 @@ def write_attribute(mesh: bpy.types.Mesh, layout: AttributeLayout, values: NDArr
 
 def read_polygons(mesh: bpy.types.Mesh) -> Polygons:
     """Read the faces of a mesh, its edges, and the triangles that Blender draws."""
-    sizes = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_total", sizes)
-    vertices = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", vertices)
     corner_edges = np.empty(len(mesh.loops), np.int32)
     mesh.loops.foreach_get("edge_index", corner_edges)
     edges = np.empty(2 * len(mesh.edges), np.int32)
@@ -148,8 +145,8 @@ def read_polygons(mesh: bpy.types.Mesh) -> Polygons:
     mesh.calc_loop_triangles()
     triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("loops", triangles)
-    starts = np.append(0, np.cumsum(sizes, dtype=np.int64))
-    numbers = (vertices, edges.reshape(-1, 2), corner_edges, triangles.reshape(-1, 3))
+    starts = np.append(0, np.cumsum(face_corner_counts(mesh), dtype=np.int64))
+    numbers = (corner_vertices(mesh), edges.reshape(-1, 2), corner_edges, triangles.reshape(-1, 3))
     return Polygons(starts, *(array.astype(np.int64) for array in numbers))
 
 
