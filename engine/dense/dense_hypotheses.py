@@ -36,45 +36,9 @@ _SMOOTHED = 110  # eigenfunctions that patches are smoothed by before they are c
 _ISOMETRIC = 0.05  # isometric defect up to which functional maps agree with the truth
 _ROUGH = "matching"  # origin of what functional maps have not refined
 _ORIENTED = 0.7  # orientation from which on hardly anything is turned over but what is too thin to tell
-
-
-@dataclass(frozen=True)
-class Selection:
-    """Which maps are followed up beside the most credible one.
-
-    Attributes
-    ----------
-    apart : float
-        Mean distance, in sqrt(area), between the images of distinct maps.
-    hopeless : float
-        Excess of the score over the best of the same orientation from which on a map is left out.
-    keeping, mirroring : int
-        How many maps are returned that keep the orientation, and that mirror it, at most.
-    ambiguous : float
-        Difference of scores up to which a map is registered before it is given up.
-    contested : float
-        Difference of scores up to which a registered map is registered closely, too, before one is chosen.
-    most : int
-        How many are registered, and how many closely, at most.
-    least : float
-        Likeness below which no map is of use: all is given up as soon as it cannot be reached any more.
-    least_softly : float
-        Likeness of the best that has been registered softly below which no other is looked for.
-    """
-
-    apart: float = 0.07
-    hopeless: float = 3.0
-    keeping: int = 4
-    mirroring: int = 2
-    ambiguous: float = 2.0
-    contested: float = 3.0
-    most: int = 3
-    least: float = -np.inf
-    least_softly: float = -np.inf
-
-
-USUAL = Selection()
-"""What is followed up usually."""
+_DISTINCT = 0.07  # mean distance, in sqrt(area), between the images of distinct maps
+_HOPELESS = 3.0  # excess of the score over the best of the same orientation from which on a map is left out
+_MOST = {1: 4, -1: 2}  # how many maps are returned that keep the orientation, and that mirror it, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +128,6 @@ def map_hypotheses_steps(
     mirrored: bool = True,
     domains: tuple[MapDomain, MapDomain] | None = None,
     searched: RoughSearch | None = None,
-    selection: Selection = USUAL,
 ) -> Steps[list[MapHypothesis]]:
     """Propose dense maps between two surfaces, most credible first.
 
@@ -189,8 +152,6 @@ def map_hypotheses_steps(
         Those of the surfaces, if earlier hypotheses have them.
     searched : RoughSearch, optional
         Matchings of extremities that keep the orientation, with its domains, if they have been looked for.
-    selection : Selection
-        Which maps are returned.
 
     Yields
     ------
@@ -219,8 +180,7 @@ def map_hypotheses_steps(
     # What takes longest comes first.
     items = [*([None] if search else []), *candidates]
     refined = yield from within(shared_steps(_refined_leads_steps, domains, items), 0.4, 1.0)
-    most = {1: selection.keeping, -1: selection.mirroring}
-    kept = distinct_leads(b, list(chain.from_iterable(refined)), selection.apart, selection.hopeless, most)
+    kept = distinct_leads(b, list(chain.from_iterable(refined)), _DISTINCT, _HOPELESS, _MOST)
     return [hypothesis_of(domains, lead) for lead in kept]
 
 

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
+import numpy as np
+
 from ..mesh.closest_points import FoundPoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
@@ -17,14 +19,17 @@ from ..runtime.progress import Preview, Progress, Steps, within
 from ..shapes.landmarks import Landmarks
 from ..shapes.shape import Shape
 from .credibility import EVEN, LITTLE_RISE, RISE, is_clear_choice
-from .dense_hypotheses import USUAL, MapHypothesis, Selection, SparseStart, map_hypotheses_steps, unrefined_hypothesis
+from .dense_hypotheses import MapHypothesis, SparseStart, map_hypotheses_steps, unrefined_hypothesis
 from .landmark_selection import steered_hypotheses_steps
-from .proposers import Contest, are_distinct, contenders, proposed_steps
-from .registered_hypotheses import Candidate, CloseFit, Follower, Settling, at_vertices
+from .proposers import MOST, Contest, are_distinct, contenders, proposed_steps
+from .registered_hypotheses import Candidate, CloseFit, Follower, at_vertices
 from .rough_maps.extremity_maps import RoughSearch
 
 EIGENPAIRS = 120
 """Laplace-Beltrami eigenpairs that the dense map is made with."""
+
+_AMBIGUOUS = 2.0
+"""Difference of scores up to which a map is registered before it is given up."""
 
 _LAID = 0.5
 """What counts of the probability that a map is right because it leaves all in place, if it was made so; by hand."""
@@ -121,7 +126,8 @@ def registered_pair_steps(
     as_they_are: bool = False,
     landmarks: Landmarks | None = None,
     searched: RoughSearch | None = None,
-    selection: Selection = USUAL,
+    least: float = -np.inf,
+    least_softly: float = -np.inf,
 ) -> Steps[RegisteredPair]:
     """Find the map between two surfaces that keeps left on the left, and refine it.
 
@@ -139,8 +145,10 @@ def registered_pair_steps(
         What is known to correspond, and is held together; the samples of the shapes begin with them.
     searched : RoughSearch, optional
         Matchings of extremities that keep the orientation, if they have been looked for; without landmarks only.
-    selection : Selection
-        Which maps are followed up beside the most credible one.
+    least : float
+        Likeness below which no map is of use: all is given up as soon as it cannot be reached any more.
+    least_softly : float
+        Likeness of the best that has been registered softly below which no other is looked for.
 
     Returns
     -------
@@ -150,16 +158,14 @@ def registered_pair_steps(
     Raises
     ------
     MatchError
-        If they are less alike than the selection asks for.
+        If they are less alike than is asked for.
     """
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.0, 0.05)
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.05, 0.1)
     mirrored = False
     if landmarks is None:
         # Mirrored maps serve only landmarks that ask for one.
-        proposals = map_hypotheses_steps(
-            x, y, starts, search=search, mirrored=False, searched=searched, selection=selection
-        )
+        proposals = map_hypotheses_steps(x, y, starts, search=search, mirrored=False, searched=searched)
         hypotheses = yield from within(proposals, 0.1, 0.4)
         yield Progress(0.4, "Comparing maps", _preview(hypotheses[0]))
     else:
@@ -175,16 +181,16 @@ def registered_pair_steps(
         ties_back = Ties.of_landmarks(*proxies[::-1], source, there, here)
     # Both surfaces are seen from outside, so the true map keeps the orientation.
     keeping = [h for h in hypotheses if h.orientation > 0] or hypotheses
-    plausible = [h for h in keeping if h.score < keeping[0].score + selection.ambiguous][: selection.most]
+    plausible = [h for h in keeping if h.score < keeping[0].score + _AMBIGUOUS][:MOST]
     if as_they_are:
         plausible += [unrefined_hypothesis(hypotheses[0].domains, start) for start in starts]
     untried = [h for h in hypotheses if h.orientation > 0 and not any(h is p for p in plausible)]
     follow = Follower(x, y, source, target, ties, ties_back)
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
-    contest, candidates = Contest(follow, landmarks, selection).credited(candidates)
+    contest, candidates = Contest(follow, landmarks, least).credited(candidates)
     yield Progress(0.6, "Fitting the surfaces", _preview(candidates[0].hypothesis, candidates[0].registration))
-    if landmarks is None and max(candidate.likeness for candidate in candidates) < selection.least_softly:
+    if landmarks is None and max(candidate.likeness for candidate in candidates) < least_softly:
         raise MatchError("The surfaces are not enough alike to be matched.")
     if search:
         contest, candidates = yield from within(proposed_steps(contest, candidates), 0.6, 0.7)
@@ -194,7 +200,7 @@ def registered_pair_steps(
     fit, others = yield from within(_contest_steps(contest, candidates, closely=hopeful), 0.7, 0.9)
     best = fit.candidate
     contest.check_last([best])
-    follow = contest.follow if hopeful else replace(contest.follow, settling=Settling(disagree=()))
+    follow = contest.follow if hopeful else replace(contest.follow, disagree=())
     fit, trips = yield from within(follow.settled_steps(fit), 0.9, 1.0)
     if best.hypothesis.is_rough:
         # Others are compared with what functional maps make of it, not with the rough map.

@@ -10,6 +10,7 @@ from ..runtime.arrays import Floats, Ints
 from .functional_maps import FunctionalMaps, PointMaps
 from .spectral_domain import MapDomain
 
+_COMPARED = 40  # samples whose distances are compared
 _BOUNDING = 200  # samples whose distances bound other ones
 _RIGID = 1e-3  # rigid defects below this are all the same
 _POINT = 1e-12  # squared radius, in units of the area, of what is no more than a point
@@ -92,11 +93,11 @@ def curvature_terms(x: MapDomain, y: MapDomain, points: PointMaps) -> dict[str, 
     return terms
 
 
-def distance_term(x: MapDomain, y: MapDomain, points: PointMaps, count: int = 40) -> float:
-    """Mean absolute change of the geodesic distances between the first `count` samples, in sqrt(area), both ways."""
+def distance_term(x: MapDomain, y: MapDomain, points: PointMaps) -> float:
+    """Mean absolute change of the geodesic distances between the first samples, in sqrt(area), both ways."""
     changes = []
     for here, there, images in ((x, y, points.on_y), (y, x, points.on_x)):
-        few = min(count, here.coarse_count)
+        few = min(_COMPARED, here.coarse_count)
         known = here.shape.samples.distances[:few, :few]
         changes.append(np.abs(known - _distances_between(there, there.vertices[images[:few]])).mean())
     return float(np.mean(changes))

@@ -22,10 +22,16 @@ from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, part_of, within
 from ..shapes.landmarks import Landmarks
 from .credibility import EVEN, LITTLE_RISE, MUCH_ALIKE, RISE, is_less_alike, is_placed, may_reach
-from .dense_hypotheses import USUAL, Selection, map_hypotheses_steps, unrefined_hypotheses_steps
+from .dense_hypotheses import map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import repaired_start_steps
 from .registered_hypotheses import Candidate, Follower
+
+MOST = 3
+"""How many maps are registered, and how many closely, at most."""
+
+_CONTESTED = 3.0
+"""Difference of scores up to which a registered map is registered closely, too, before one is chosen."""
 
 _DISTINCT = 0.07
 """Mean distance, in sqrt(area), from which on two registrations are different maps."""
@@ -52,13 +58,13 @@ class Contest:
         Registers what is proposed.
     landmarks : Landmarks or None
         What the maps have to agree with.
-    selection : Selection
-        Which maps are compared.
+    least : float
+        Likeness below which no map is of use: all is given up as soon as it cannot be reached any more.
     """
 
     follow: Follower
     landmarks: Landmarks | None = None
-    selection: Selection = USUAL
+    least: float = -np.inf
 
     def may_reach(self, least: float, candidates: list[Candidate], rise: float) -> bool:
         """Say whether any of the candidates may still lead to a map of so much likeness; with landmarks, all may.
@@ -70,12 +76,12 @@ class Contest:
 
     def check(self, candidates: list[Candidate], rise: float) -> None:
         """Raise a `MatchError` if none of the candidates may be of use any more."""
-        if not self.may_reach(self.selection.least, candidates, rise):
+        if not self.may_reach(self.least, candidates, rise):
             raise MatchError("The surfaces are not enough alike to be matched.")
 
     def check_last(self, candidates: list[Candidate]) -> None:
         """Do so where nothing more is proposed: then only the likeness of rough ones changes, once they are refined."""
-        if not self.may_reach(self.selection.least, candidates, 0.0):
+        if not self.may_reach(self.least, candidates, 0.0):
             self.check([candidate for candidate in candidates if candidate.hypothesis.is_rough], LITTLE_RISE)
 
     def credited(self, candidates: list[Candidate]) -> tuple[Contest, list[Candidate]]:
@@ -123,14 +129,14 @@ def are_distinct(first: Floats, second: Floats, areas: Floats, elsewhere: float 
 
 def contenders(contest: Contest, candidates: list[Candidate]) -> list[Candidate]:
     """Take the best candidate, and other maps that are nearly as credible."""
-    selection, areas = contest.selection, contest.follow.source.mass
-    close = [candidate for candidate in candidates if candidate.score <= candidates[0].score + selection.contested]
+    areas = contest.follow.source.mass
+    close = [candidate for candidate in candidates if candidate.score <= candidates[0].score + _CONTESTED]
 
     def differ(candidate: Candidate, other: Candidate) -> bool:
         """Say whether the registrations of two candidates are different maps."""
         return are_distinct(candidate.registration.positions, other.registration.positions, areas)
 
-    return best_distinct(close, differ, selection.most)
+    return best_distinct(close, differ, MOST)
 
 
 def _matchings_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
@@ -179,7 +185,7 @@ def _turned_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[C
     Most bodies look the same way, so that what is in place is believed more; but a half turn is compared fairly only if
     it is registered as well.  Bodies that are much alike tell front from back themselves.
     """
-    contested = candidates[0].score + contest.selection.contested
+    contested = candidates[0].score + _CONTESTED
     placed = [c for c in candidates if c.score <= contested and is_placed(c.in_place)]
     if contest.landmarks is not None or not placed or not is_less_alike(placed[0].likeness, MUCH_ALIKE):
         return candidates
@@ -228,9 +234,9 @@ def proposed_steps(contest: Contest, candidates: list[Candidate]) -> Steps[tuple
     Raises
     ------
     MatchError
-        If the surfaces are less alike than the selection asks for, whatever may be proposed.
+        If the surfaces are less alike than is asked for, whatever may be proposed.
     """
-    wanted = max(EVEN, contest.selection.least)
+    wanted = max(EVEN, contest.least)
     pending = list(PROPOSERS)
     while True:
         contest.check(candidates, max((proposer.rise for proposer in pending), default=LITTLE_RISE))

@@ -74,25 +74,11 @@ _WORTHWHILE = 3.0
 _POSED, _BUILT = 0.38, 0.48
 """Mean difference of wave kernel signatures up to which only poses differ, and from which on bodies are unlike."""
 
+_STAGES = AGAIN, CLOSE, LAST
+"""How a surface is registered from where the other lies: each corrects what the other strains."""
 
-@dataclass(frozen=True)
-class Settling:
-    """How both surfaces are registered in turn until they agree: each corrects what the other strains.
-
-    Attributes
-    ----------
-    stages : tuple of Stage
-        How one is registered from where the other lies.
-    disagree : tuple of float
-        Mean length of the way there and back, in sqrt(area), from which on both are registered once more, twice, and
-        so on.
-    nearer : float
-        Part of its length before from which on this way has not become shorter.
-    """
-
-    stages: tuple[Stage, ...] = (AGAIN, CLOSE, LAST)
-    disagree: tuple[float, ...] = (0.0055, 0.008, 0.012)
-    nearer: float = 0.95
+_NEARER = 0.95
+"""Part of its length before from which on the way there and back has not become shorter."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,8 +148,9 @@ class Follower:
         Their surfaces.
     ties, ties_back : Ties or None
         Where the source is held on the target, and the target on the source.
-    settling : Settling
-        How both are registered in turn.
+    disagree : tuple of float
+        Mean length of the way there and back, in sqrt(area), from which on both are registered in turn once more,
+        twice, and so on.
     standing : float
         How probably, at most, a map of these surfaces that is known already is right by what it leaves in place.
     """
@@ -174,7 +161,7 @@ class Follower:
     target: DeformableSurface
     ties: Ties | None = None
     ties_back: Ties | None = None
-    settling: Settling = Settling()
+    disagree: tuple[float, ...] = (0.0055, 0.008, 0.012)
     standing: float = 0.0
     is_sent_once: ClassVar[bool] = True
 
@@ -311,7 +298,7 @@ class Follower:
         source, target = self.source, self.target
         positions, isometry = candidate.registration.positions, candidate.isometry
 
-        def register_all_steps(starts: list[Floats], stage: Stage = FINE) -> Steps[list[Registration]]:
+        def register_all_steps(starts: list[Floats], stage: Stage) -> Steps[list[Registration]]:
             """Register from several positions."""
             items = [(start, stage, isometry) for start in starts]
             return (yield from shared_steps(_registered_steps, self, items))
@@ -320,7 +307,7 @@ class Follower:
             way = untwisted(self.x, source, target, positions, isometry)
             first = yield from within(wound_steps(register_all_steps, source, target, way), 0.0, 0.2)
         else:  # what landmarks hold stays the way round it is
-            (first,) = yield from within(register_all_steps([positions]), 0.0, 0.2)
+            (first,) = yield from within(register_all_steps([positions], FINE), 0.0, 0.2)
         reverse, final = yield from within(self.again_steps(candidate, first), 0.2, 1.0)
         return CloseFit(candidate, final, reverse)
 
@@ -330,7 +317,7 @@ class Follower:
         At last the target follows where the source has come to lie since.  How far they were apart before that tells
         where they may err, see `trips`.
         """
-        trips, disagree = self.trips(fit), self.settling.disagree
+        trips, disagree = self.trips(fit), self.disagree
         for number, agreed in enumerate(disagree):
             length = self._length(trips)
             if length <= agreed:
@@ -342,7 +329,7 @@ class Follower:
             if self._length(apart) >= length:
                 break
             fit, trips = other, apart
-            if self._length(apart) > self.settling.nearer * length:
+            if self._length(apart) > _NEARER * length:
                 break
         matches = fit.registration.on_source, fit.registration.on_target
         start, isometry = fit.reverse.positions, fit.candidate.isometry
@@ -377,7 +364,7 @@ class Follower:
         """Register the target from where the source lies on it, then the source from where the target does."""
         source, target = self.source, self.target
         here, there = self._guides(candidate.hypothesis, self.vertex_maps(found))
-        restart = partial(restarted_steps, stages=self.settling.stages, isometry=candidate.isometry)
+        restart = partial(restarted_steps, stages=_STAGES, isometry=candidate.isometry)
         matches, guides = (found.on_source, found.on_target), (there, here)
         steps = restart(target, source, self.y.unit_functions(_DETAILED), matches, ties=self.ties_back, guides=guides)
         reverse = yield from within(steps, 0.0, 0.5)

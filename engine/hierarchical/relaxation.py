@@ -13,6 +13,9 @@ from scipy.sparse import csr_array
 from ..runtime.arrays import Floats, Ints, marked
 from .problem import MatchingProblem
 
+_SWEEPS = 50
+"""Bound on the sweeps over all points of a descent; in practice a dozen are enough."""
+
 
 @dataclass(frozen=True, eq=False)
 class RelaxedMatching:
@@ -131,7 +134,7 @@ def project(mixture: Floats, candidates: Ints) -> Ints:
     return used[chosen]
 
 
-def descend(problem: MatchingProblem, assignment: Ints, max_sweeps: int = 50) -> Ints:
+def descend(problem: MatchingProblem, assignment: Ints) -> Ints:
     """Move one point at a time to the best free candidate, anywhere on Y, until no point can improve.
 
     This repairs what small neighbourhoods cannot: a point whose right place lies outside its neighbourhood.
@@ -142,8 +145,6 @@ def descend(problem: MatchingProblem, assignment: Ints, max_sweeps: int = 50) ->
         The points against all m candidates.
     assignment : (j,) array of int
         Where to start, one-to-one.
-    max_sweeps : int
-        Bound on the sweeps over all points; in practice a dozen are enough.
 
     Returns
     -------
@@ -155,7 +156,7 @@ def descend(problem: MatchingProblem, assignment: Ints, max_sweeps: int = 50) ->
     to_matched = target[:, current]  # (m, j): distance from each candidate to the present match of each point
     squares = np.square(to_matched).sum(axis=1)
     free = ~marked(current, len(target))
-    for _ in range(max_sweeps):
+    for _ in range(_SWEEPS):
         moved = False
         for i in range(len(current)):
             # The square expanded, so that a point costs one matrix-vector product; the point's distance to itself is

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
-from ..dense.dense_hypotheses import USUAL, SparseStart, map_domains
+from ..dense.dense_hypotheses import SparseStart, map_domains
 from ..dense.dense_registration import EIGENPAIRS, registered_pair_steps
 from ..dense.densify import MEASURED, dense_match_steps
 from ..dense.quality import DenseMatch, with_alternatives
@@ -189,10 +189,15 @@ def _dense_steps(
         starts.append(SparseStart(*rows, "hierarchy"))
     if task.begun is not None:
         starts = [_begun_start(x, y, finer, task.begun)]
-    selection, clock = replace(USUAL, least=task.least, least_softly=task.least_softly), task.clock
-    search = task.begun is None and not task.assumed
+    clock, search = task.clock, task.begun is None and not task.assumed
     registering = registered_pair_steps(
-        *finer, starts, search=search, landmarks=landmarks, searched=searched, selection=selection
+        *finer,
+        starts,
+        search=search,
+        landmarks=landmarks,
+        searched=searched,
+        least=task.least,
+        least_softly=task.least_softly,
     )
     registered = yield from within(registering, 0.0, 0.75)
     clock.lap("registration")

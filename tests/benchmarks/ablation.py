@@ -25,7 +25,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from engine import HierMatchError, TriangleMesh, match, use_processes
-from engine.dense.registered_hypotheses import Settling
 from tests.benchmarks.clothed import clothed, garments
 from tests.benchmarks.known_shapes import LOST, KnownShape, KnownShapes
 from tests.benchmarks.modular import as_it_is, closed_up, ends_of, put_together
@@ -85,7 +84,7 @@ def without_starts(own):
 
 def agreeing_already(own):
     """Follow the target once at last, and never go on in turns."""
-    return lambda follow, fit: own(replace(follow, settling=Settling(disagree=())), fit)
+    return lambda follow, fit: own(replace(follow, disagree=()), fit)
 
 
 R, D, P = "engine.dense.registered_hypotheses", "engine.dense.dense_registration", "engine.registration.prolongation"

@@ -7,9 +7,11 @@ import numpy as np
 
 from ...runtime.arrays import TINY, Floats, Ints
 
+_WEIGHT = 0.3  # of the descriptors beside the distances
+
 
 def beam_matchings(
-    distances_x: Floats, distances_y: Floats, dissimilarity: Floats, *, kept: int, width: int = 400, weight: float = 0.3
+    distances_x: Floats, distances_y: Floats, dissimilarity: Floats, *, kept: int, width: int = 400
 ) -> Ints:
     r"""Match points one after the other, keeping the best partial matchings only.
 
@@ -30,8 +32,6 @@ def beam_matchings(
         How many matchings are wanted at most, r.
     width : int
         How many partial matchings are kept.
-    weight : float
-        w, of the descriptors.
 
     Returns
     -------
@@ -39,12 +39,12 @@ def beam_matchings(
         For each matching the images of the points, one after another; the cheapest first, up to `kept`.
     """
     m, n = dissimilarity.shape
-    images, costs = np.arange(n)[:, None], weight * dissimilarity[0]
+    images, costs = np.arange(n)[:, None], _WEIGHT * dissimilarity[0]
     for new in range(1, m):
         known = distances_x[new, :new, None]  # (new, 1)
         offered = distances_y[images]  # (r, new, n)
         stretch = 2 * np.abs(known - offered) / np.maximum(known + offered, TINY)
-        extended = costs[:, None] + 2 * stretch.mean(axis=1) + weight * dissimilarity[new]
+        extended = costs[:, None] + 2 * stretch.mean(axis=1) + _WEIGHT * dissimilarity[new]
         np.put_along_axis(extended, images, np.inf, axis=1)
         best = np.argsort(extended, axis=None, kind="stable")[: min(width, len(images) * (n - new))]
         costs = extended.ravel()[best]

@@ -11,12 +11,12 @@ from engine import MatchError, SurfacePoints, run
 from engine.dense import dense_registration as dense_map
 from engine.dense import proposers
 from engine.dense.credibility import probability_in_place, probability_turned
-from engine.dense.dense_hypotheses import Selection, assessed_everywhere, map_hypotheses_steps
+from engine.dense.dense_hypotheses import assessed_everywhere, map_hypotheses_steps
 from engine.dense.dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
 from engine.dense.densify import dense_match_steps
 from engine.dense.functional_maps import PointMaps
 from engine.dense.landmark_selection import Steered
-from engine.dense.registered_hypotheses import Follower, Settling
+from engine.dense.registered_hypotheses import Follower
 from engine.geometry.procrustes import agreement_in_place
 from engine.registration.elastic import ElasticSurface
 from engine.registration.registration import SOFT
@@ -209,13 +209,12 @@ def test_matchings_are_followed_only_if_they_agree_with_landmarks(agreeing, bodi
     assert ("matching" in [candidate.hypothesis.origin for candidate in pair.candidates]) == agreeing
 
 
-BOTH = Selection(apart=0.0, hopeless=np.inf, ambiguous=np.inf)
-"""That both of two maps are followed, however much less credible one is."""
-
-
 @pytest.fixture
-def both_starts(bodies, starts):
-    """Start from the truth, and from it with the hind legs exchanged."""
+def both_starts(bodies, starts, monkeypatch):
+    """Start from the truth, and from it with the hind legs exchanged: both are followed, however unlike in score."""
+    monkeypatch.setattr("engine.dense.dense_hypotheses._DISTINCT", 0.0)
+    monkeypatch.setattr("engine.dense.dense_hypotheses._HOPELESS", np.inf)
+    monkeypatch.setattr(dense_map, "_AMBIGUOUS", np.inf)
     return [starts[0], hind_legs_exchanged(*bodies)]
 
 
@@ -232,13 +231,13 @@ def with_soft_score(monkeypatch, origin, added):
 
 def test_maps_that_are_nearly_as_credible_are_registered_closely_too(bodies, both_starts, monkeypatch):
     x, y, rest_x, rest_y = bodies
-    plain = run(registered_pair_steps(x, y, both_starts, search=False, selection=BOTH))
+    plain = run(registered_pair_steps(x, y, both_starts, search=False))
     scores = {candidate.hypothesis.origin: candidate.score for candidate in plain.candidates}
     # So that the wrong one seems a little better at first.
     added = scores["exchanged"] - scores["true"] + 1
     assert added > 1
     with_soft_score(monkeypatch, "true", added)
-    pair = run(registered_pair_steps(x, y, both_starts, search=False, selection=BOTH))
+    pair = run(registered_pair_steps(x, y, both_starts, search=False))
     assert [candidate.hypothesis.origin for candidate in pair.candidates] == ["true", "exchanged"]
     assert errors(pair.registration.on_target, y.mesh.triangles, rest_x, rest_y, x.mesh.area).max() < 0.08
     follow = Follower(x, y, pair.source, pair.target)
@@ -270,13 +269,14 @@ def disagreeing(bodies, starts):
     x, y = bodies[:2]
     pair = run(registered_pair_steps(x, y, starts[:1], search=False))
     follow = Follower(x, y, pair.source, pair.target)
-    hardly = replace(follow, settling=Settling(stages=(replace(SOFT, weights=(40.0,)),)))
-    return follow, run(hardly.close_steps(pair.candidates[0]))
+    with pytest.MonkeyPatch.context() as hardly:
+        hardly.setattr("engine.dense.registered_hypotheses._STAGES", (replace(SOFT, weights=(40.0,)),))
+        return follow, run(follow.close_steps(pair.candidates[0]))
 
 
 @pytest.mark.parametrize(("agreed", "more"), [((np.inf,), 0), ((0.0,), 1), ((0.0, 0.0), 2), ((0.0, np.inf), 1)])
 def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monkeypatch):
-    follow, fit = replace(disagreeing[0], settling=Settling(disagree=agreed)), disagreeing[1]
+    follow, fit = replace(disagreeing[0], disagree=agreed), disagreeing[1]
     lengths = [ways_there_and_back(follow, fit)]
     own = Follower.again_steps
     starts = []
@@ -294,7 +294,8 @@ def test_maps_that_disagree_are_registered_again(agreed, more, disagreeing, monk
 
 
 def test_registering_again_ends_where_the_maps_come_no_nearer(disagreeing, monkeypatch):
-    follow, fit = replace(disagreeing[0], settling=Settling(disagree=(0.0,) * 3, nearer=0.0)), disagreeing[1]
+    monkeypatch.setattr("engine.dense.registered_hypotheses._NEARER", 0.0)
+    follow, fit = replace(disagreeing[0], disagree=(0.0,) * 3), disagreeing[1]
     own = Follower.again_steps
     tried = []
     monkeypatch.setattr(Follower, "again_steps", lambda self, c, found: tried.append(found) or own(self, c, found))
@@ -350,7 +351,7 @@ def test_maps_that_are_clearly_worse_are_not_registered_closely(bodies, both_sta
     closely = []
     own = Follower.close_steps
     monkeypatch.setattr(Follower, "close_steps", lambda self, c: closely.append(c.hypothesis.origin) or own(self, c))
-    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False, selection=BOTH))
+    pair = run(registered_pair_steps(*bodies[:2], both_starts, search=False))
     assert closely == ["true"]
     assert pair.margin == pytest.approx(pair.candidates[1].score - pair.candidates[0].score)
 
@@ -394,8 +395,8 @@ def test_where_no_map_can_be_right_the_best_alone_is_followed(bodies, both_start
     monkeypatch.setattr(proposers, "PROPOSERS", (proposers.Proposer(lambda *_: asked.append(1), 4.0),))
     monkeypatch.setattr(proposers, "may_reach", lambda least, *_: least == -np.inf)
     with_soft_score(monkeypatch, "true", 100.0)
-    selection = replace(BOTH, contested=1000.0)
-    pair = run(registered_pair_steps(x, y, both_starts, selection=selection))
+    monkeypatch.setattr(proposers, "_CONTESTED", 1000.0)
+    pair = run(registered_pair_steps(x, y, both_starts))
     assert not asked
     assert pair.candidates[0].hypothesis.origin != "true"
     assert pair.margin is not None
@@ -409,7 +410,7 @@ def test_surfaces_that_are_less_alike_than_asked_for_are_given_up_before_close_r
     monkeypatch.setattr(dense_map, "_contest_steps", lambda *_: closely.append(1))
     for least in ({"least": np.inf}, {"least_softly": np.inf}):
         with pytest.raises(MatchError, match="not enough alike"):
-            run(registered_pair_steps(x, y, both_starts, search=False, selection=replace(BOTH, **least)))
+            run(registered_pair_steps(x, y, both_starts, search=False, **least))
     assert not closely
 
 
@@ -427,7 +428,7 @@ def test_a_chosen_map_by_which_the_surfaces_are_less_alike_than_asked_for_is_not
     monkeypatch.setattr(Follower, "all_close_steps", unlike_steps)
     monkeypatch.setattr(Follower, "settled_steps", lambda *_: settled.append(1))
     with pytest.raises(MatchError, match="not enough alike"):
-        run(registered_pair_steps(x, y, both_starts, search=False, selection=replace(BOTH, least=10.0)))
+        run(registered_pair_steps(x, y, both_starts, search=False, least=10.0))
     assert not settled
 
 
@@ -475,7 +476,7 @@ def test_what_is_left_in_place_makes_the_choice_clear_and_other_maps_are_offered
 def test_a_turned_body_is_another_map_than_one_left_in_place(bodies, both_starts):
     """The score counts what stands where it stood, but for surfaces from which something may have been cut off."""
     x, y = bodies[:2]
-    pair = run(registered_pair_steps(x, y, both_starts, selection=BOTH))
+    pair = run(registered_pair_steps(x, y, both_starts))
     areas, points = pair.source.mass, x.mesh.vertices
     standing = max(candidate.in_place for candidate in pair.candidates)
     for candidate in pair.candidates:

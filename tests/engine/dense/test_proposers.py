@@ -10,7 +10,6 @@ import pytest
 from engine import MatchError, run
 from engine.dense import proposers
 from engine.dense.credibility import EVEN, MUCH_ALIKE
-from engine.dense.dense_hypotheses import Selection
 from engine.dense.proposers import Contest, Proposer, are_distinct, contenders, proposed_steps
 
 
@@ -186,7 +185,7 @@ def test_what_leaves_unlike_bodies_in_place_is_compared_with_a_half_turn(scores,
 
 
 def contest_of(least, *, are_closed=True):
-    return Contest(SimpleNamespace(standing=0.0, are_closed=are_closed), selection=Selection(least=least))
+    return Contest(SimpleNamespace(standing=0.0, are_closed=are_closed), least=least)
 
 
 def candidate_of(likeness):
