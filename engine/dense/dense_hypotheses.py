@@ -338,7 +338,7 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
     terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
     terms["distances"] = distance_term(x, y, points)
     terms["rigidity"] = rigidity_term(x, y, points, _SMOOTHED)
-    return MapLead(points, map_score(terms), map_orientation(x, y, points, maps)[0], terms, origin)
+    return MapLead(points, map_score(terms), map_orientation(x, y, points, maps), terms, origin)
 
 
 def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:

@@ -22,28 +22,22 @@ def spectral_terms(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> dict[str
     Returns
     -------
     dict of float
-        ``bijectivity``, :math:`\|C_X C_Y - I\|^2 / k`; ``orthogonality``, the mean over both directions of
-        :math:`\|C^T C - I\|^2 / k`, zero for maps that keep areas; ``commutator``, that of
+        ``bijectivity``, :math:`\|C_X C_Y - I\|^2 / k`; ``commutator``, the mean over both directions of
         :math:`\|C \Lambda - \Lambda' C\|^2 / \|\Lambda\|^2`, zero for maps that keep distances, and for those of
         constants alone.
     """
     size = len(maps.onto_x)
-    unit = np.eye(size)
     x_values, y_values = x.values[:size], y.values[:size]
     gaps = np.square(x_values[:, None] - y_values)  # (k of X, k of Y)
     commutator = (np.square(maps.onto_x) * gaps).sum() + (np.square(maps.onto_y) * gaps.T).sum()
     scale = np.square(x_values).sum() + np.square(y_values).sum()
-    orthogonality = sum(np.square(c.T @ c - unit).sum() for c in maps)
     return {
-        "bijectivity": float(np.square(maps.onto_x @ maps.onto_y - unit).sum() / size),
-        "orthogonality": float(orthogonality / (2 * size)),
+        "bijectivity": float(np.square(maps.onto_x @ maps.onto_y - np.eye(size)).sum() / size),
         "commutator": float(commutator / scale) if scale > 0 else 0.0,  # of constants alone
     }
 
 
-def map_orientation(
-    x: MapDomain, y: MapDomain, points: PointMaps, maps: FunctionalMaps
-) -> tuple[float, Floats, Floats]:
+def map_orientation(x: MapDomain, y: MapDomain, points: PointMaps, maps: FunctionalMaps) -> float:
     r"""Measure whether a map keeps or mirrors the surface, by the sign of its Jacobian.
 
     The gradients of the first eigenfunctions of Y at the image of a point, and those of their pullbacks at the point,
@@ -60,14 +54,12 @@ def map_orientation(
 
     Returns
     -------
-    mean : float
+    float
         Mean sign, -1 (mirrored everywhere) to 1 (kept everywhere), over the samples of both surfaces.
-    at_x, at_y : (p,), (q,) arrays of float
-        How much the two sets of gradients agree, -1 to 1, at each sample.
     """
     at_x = _agreement(x.gradients, y.gradients, points.on_y, maps.onto_x)
     at_y = _agreement(y.gradients, x.gradients, points.on_x, maps.onto_y)
-    return float(np.sign(at_x).mean() + np.sign(at_y).mean()) / 2, at_x, at_y
+    return float(np.sign(at_x).mean() + np.sign(at_y).mean()) / 2
 
 
 def _agreement(here: Floats, there: Floats, images: Ints, pullback: Floats) -> Floats:

@@ -305,7 +305,7 @@ def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLe
         x.coarse_basis, y.coarse_basis, points, min(_SIZES[-1], x.coarse_basis.size, y.coarse_basis.size)
     )
     terms = spectral_terms(x, y, maps)
-    orientation = map_orientation(x, y, points, maps)[0]
+    orientation = map_orientation(x, y, points, maps)
     score = terms["bijectivity"] - _ORIENTED * abs(orientation)
     yield Progress(1.0, "Comparing maps")
     return MapLead(points, score, orientation, terms, "extremities")

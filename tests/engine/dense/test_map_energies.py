@@ -46,7 +46,7 @@ def test_the_identity_has_no_defect(body):
     assert all(value < 1e-12 for value in spectral_terms(body, body, maps).values())
     assert curvature_terms(body, body, points) == {"curvature": 0, "waves": 0}
     assert rigidity_term(body, body, points, 40) == pytest.approx(1e-3)  # the least there is
-    assert map_orientation(body, body, points, maps)[0] == 1
+    assert map_orientation(body, body, points, maps) == 1
 
 
 def test_spectral_terms_follow_their_definitions(body, bent):
@@ -55,8 +55,6 @@ def test_spectral_terms_follow_their_definitions(body, bent):
     terms = spectral_terms(body, bent, FunctionalMaps(p, q))
     a, b, unit = np.diag(body.values[:12]), np.diag(bent.values[:12]), np.eye(12)
     assert terms["bijectivity"] == pytest.approx(np.linalg.norm(p @ q - unit) ** 2 / 12)
-    orthogonality = (np.linalg.norm(p.T @ p - unit) ** 2 + np.linalg.norm(q.T @ q - unit) ** 2) / 24
-    assert terms["orthogonality"] == pytest.approx(orthogonality)
     commutators = np.linalg.norm(p @ b - a @ p) ** 2 + np.linalg.norm(q @ a - b @ q) ** 2
     assert terms["commutator"] == pytest.approx(commutators / (np.linalg.norm(a) ** 2 + np.linalg.norm(b) ** 2))
 
@@ -64,10 +62,7 @@ def test_spectral_terms_follow_their_definitions(body, bent):
 def test_a_bent_copy_keeps_orientation_and_a_reflected_one_does_not(body, bent, reflected):
     for other, sign in ((bent, 1), (reflected, -1)):
         points = at_vertices(body, other)
-        mean, at_x, at_y = map_orientation(body, other, points, fitted(body, other, points))
-        assert sign * mean > 0.8
-        assert sign * at_x.mean() > 0.7
-        assert sign * at_y.mean() > 0.7
+        assert sign * map_orientation(body, other, points, fitted(body, other, points)) > 0.8
 
 
 def test_every_term_prefers_the_truth_to_a_wrong_map(body, bent):
