@@ -413,8 +413,7 @@ class Follower:
         domain, lowest = hypothesis.domains[1], slice(1, 1 + _GUIDES)
         values = domain.values[lowest]
         there = domain.functions[:, lowest] * np.sqrt(values[:1] / values)
-        here = self._smooth @ (self._smooth.T @ (self.source.mass[:, None] * there[images.on_y]))
-        return here, there
+        return self.source.smoothed(there[images.on_y], self._smooth), there
 
     def vertex_maps(self, registration: Registration) -> PointMaps:
         """Take the maps of a registration between all vertices."""

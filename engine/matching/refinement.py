@@ -104,9 +104,8 @@ def refine_map_steps(
     yield from within(y.spectrum_steps(EIGENPAIRS), 0.15, 0.2)
     moving, fixed = (DeformableSurface(each.mesh, each.laplace, each.surface.cut_border(each.mesh)) for each in (x, y))
     places = fixed.in_unit_size(x.surface.proxy.on_finer(places))
-    functions = x.unit_functions(_DETAILED)
     # Without the noise of the map, which the surface would keep as folds.
-    start = functions @ (functions.T @ (moving.mass[:, None] * places))
+    start = moving.smoothed(places, x.unit_functions(_DETAILED))
     proxies = x.surface.proxy, y.surface.proxy
     ties = Ties.of_landmarks(*proxies, fixed, known.source, known.target)
     there = yield from within(register_steps(moving, fixed, start, (FINE, _CLOSE), ties=ties), 0.2, 0.5)

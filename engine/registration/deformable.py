@@ -116,6 +116,10 @@ class DeformableSurface:
         """Turn coordinates of its mesh (k, 3) into positions around the unit surface."""
         return (positions - self._centre) / self._scale
 
+    def smoothed(self, values: Floats, functions: Floats) -> Floats:
+        """Make values (n, k) of functions (n, f) alone, which are orthonormal under its mass: without finer noise."""
+        return functions @ (functions.T @ (self.mass[:, None] * values))
+
     def averaged(self, values: Floats, radius: float) -> Floats:
         """Average values (n, k) over a neighbourhood that heat spreads over, of such a radius in sqrt(area).
 

@@ -38,8 +38,7 @@ def half_turned(source: DeformableSurface, target: DeformableSurface, positions:
     lying = _nearest_half_turn(source, target, positions)
     linear, translation = nearest_similarity(source.vertices, lying, source.mass)
     own = source.vertices @ linear.T + translation
-    smooth = functions[:, :_POSE]
-    return own + smooth @ (smooth.T @ (source.mass[:, None] * (lying - own)))
+    return own + source.smoothed(lying - own, functions[:, :_POSE])
 
 
 def _nearest_half_turn(source: DeformableSurface, target: DeformableSurface, positions: Floats) -> Floats:

@@ -274,7 +274,7 @@ def smooth_start(source: DeformableSurface, target: DeformableSurface, images: I
     (n_x, 3) array of float
         Positions in the space of the target.
     """
-    return functions @ (functions.T @ (source.mass[:, None] * target.vertices[images]))
+    return source.smoothed(target.vertices[images], functions)
 
 
 def restarted_steps(
@@ -305,7 +305,7 @@ def restarted_steps(
         As in `register_steps`.
     """
     places = matches[0].interpolate(target.triangles, target.vertices)
-    start = functions @ (functions.T @ (source.mass[:, None] * places))
+    start = source.smoothed(places, functions)
     posed = (start + places) / 2
     return register_steps(
         source, target, start, stages, matches, posed=posed, isometry=isometry, ties=ties, guides=guides
