@@ -10,10 +10,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..dense.rough_maps.extremity_search import beam_matchings
-from ..dense.rough_maps.lifted_matchings import described, squared_differences
+from ..dense.rough_maps.lifted_matchings import described
 from ..geometry.best_distinct import best_distinct
 from ..geometry.orientation import signed_area_tables, signed_areas
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Floats, Ints, squared_differences
 from ..runtime.progress import Progress, Steps
 from ..shapes.shape import Shape
 

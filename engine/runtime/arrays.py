@@ -86,7 +86,7 @@ def shares_along(points: Floats, starts: Floats, ways: Floats) -> Floats:
     return (((points - starts) * ways).sum(axis=-1) / squares).clip(0, 1)
 
 
-def squared_differences(first: Floats, second: Floats) -> Floats:
+def squared_differences(first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
     """Squared Euclidean distance of every row of `first` (n, d) from every row of `second` (m, d): (n, m)."""
     square = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T
-    return np.maximum(square, 0)
+    return np.maximum(square, 0, out=square)

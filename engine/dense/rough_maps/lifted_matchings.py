@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...geometry.best_distinct import best_distinct
 from ...geometry.orientation import signed_area_tables, signed_areas
-from ...runtime.arrays import Floats, Ints
+from ...runtime.arrays import Floats, Ints, squared_differences
 from ..functional_maps import PointMaps, nearest_both_ways
 from ..spectral_domain import MapDomain
 
@@ -161,22 +161,3 @@ def _in_means(distances: Floats) -> Floats:
     """Distances (k, m) of points from samples in units of the mean from each sample."""
     means = distances.mean(axis=0)
     return np.divide(distances, means, out=np.zeros_like(distances, np.float64), where=means > 0)
-
-
-def squared_differences(first: NDArray[np.float32], second: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Compare all rows of two arrays.
-
-    Parameters
-    ----------
-    first : (k, d) array of float
-        Descriptions of points.
-    second : (n, d) array of float
-        Descriptions of others.
-
-    Returns
-    -------
-    (k, n) array of float
-        Squared lengths of the differences of their rows.
-    """
-    squares = np.einsum("nd,nd->n", second, second)
-    return squares - 2 * first @ second.T + np.einsum("kd,kd->k", first, first)[:, None]

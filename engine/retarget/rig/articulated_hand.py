@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, group_sums, unit_vectors
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, squared_differences, unit_vectors
 from .digit_groups import DigitGroup
 from .skeleton import Skeleton
 
@@ -207,7 +207,7 @@ class HandSolver:
         here = np.concatenate([points, reach * normals], axis=1)
         there = np.concatenate([hand.places, reach * hand.sides], axis=1)
         # All pairs: so few points are compared faster than trees over them are built.
-        apart = np.square(here).sum(axis=1)[:, None] + np.square(there).sum(axis=1) - 2 * here @ there.T
+        apart = squared_differences(here, there)
         onto, back = apart.argmin(axis=1), apart.argmin(axis=0)
         own = np.concatenate([np.arange(len(here)), back])
         other = np.concatenate([onto, np.arange(len(there))])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...mesh.area_samples import AreaSamples, even_samples
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, marked
+from ...runtime.arrays import Bools, Floats, Ints, marked, slices, squared_differences
 from .contact import Surface
 from .sight_lines import depths_behind
 
@@ -115,14 +115,11 @@ def _hidden(mesh: TriangleMesh, places: Floats, samples: AreaSamples) -> Bools:
 def _winding_numbers(mesh: TriangleMesh, samples: AreaSamples, points: Floats) -> Floats:
     """Find how often the surface goes around points (k, 3), as its samples see it, (k,)."""
     vectors = samples.areas[:, None] * mesh.triangle_normals[samples.triangles]
-    lengths = np.square(samples.positions).sum(axis=1)
     least = mesh.area / _SAMPLES  # nearer than that a sample is no point any more
     found = np.empty(len(points))
-    for start in range(0, len(points), _CHUNK):
-        part = points[start : start + _CHUNK]
-        squares = np.square(part).sum(axis=1)[:, None] + lengths - 2 * part @ samples.positions.T
-        squares = squares.clip(min=least)
+    along = (samples.positions * vectors).sum(axis=1)
+    for part in slices(len(points), _CHUNK):
+        squares = squared_differences(points[part], samples.positions).clip(min=least)
         shares = 1 / (squares * np.sqrt(squares))
-        along = samples.positions * vectors
-        found[start : start + _CHUNK] = shares @ along.sum(axis=1) - ((shares @ vectors) * part).sum(axis=1)
+        found[part] = shares @ along - ((shares @ vectors) * points[part]).sum(axis=1)
     return found / (4 * np.pi)
