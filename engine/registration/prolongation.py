@@ -36,9 +36,9 @@ def lift_steps(
     registered: Floats,
     target: TriangleMesh,
     *,
-    target_proxy: Proxy | None = None,
-    proxy_map: Ints | None = None,
-    search: ClosestPoints | None = None,
+    target_proxy: Proxy,
+    proxy_map: Ints,
+    search: ClosestPoints,
     untangled: bool = True,
     shown: Bools | None = None,
 ) -> Steps[SurfacePoints]:
@@ -54,14 +54,14 @@ def lift_steps(
         Positions of the proxy's vertices after it was laid onto the target.
     target : TriangleMesh
         The mesh to map to, as dense or coarse as it is.
-    target_proxy : Proxy, optional
+    target_proxy : Proxy
         The coarse mesh that stands for the target.
-    proxy_map : (k,) array of int, optional
-        For each vertex of the source's proxy, the vertex of the target's that it is matched to.  With both, a vertex is
-        looked for only around the match of its proxy vertex, so that surfaces that come close in space, such as the
-        hands of folded arms, are not taken for one another.
-    search : ClosestPoints, optional
-        The search on the target, if there is one already.
+    proxy_map : (k,) array of int
+        For each vertex of the source's proxy, the vertex of the target's that it is matched to.  A vertex is looked for
+        only around the match of its proxy vertex, so that surfaces that come close in space, such as the hands of
+        folded arms, are not taken for one another.
+    search : ClosestPoints
+        The search on the target.
     untangled : bool
         Whether triangles that are turned over are put right at last.
     shown : (n,) array of bool, optional
@@ -94,9 +94,7 @@ def lift_steps(
        26, 2007.
     """
     yield Progress(0, _LABEL)
-    lift = _Lift(source, source_proxy, target, ClosestPoints(target) if search is None else search)
-    if target_proxy is not None and proxy_map is not None:
-        lift.restrict(target_proxy, proxy_map)
+    lift = _Lift((source, source_proxy), (target, target_proxy), proxy_map, search)
     average = averaging(vertex_adjacency(source_proxy.mesh))
     motion = _motion(source_proxy, registered, average)
     n, k = source.vertex_count, source_proxy.mesh.vertex_count
@@ -142,14 +140,16 @@ def lift_steps(
 class _Lift:
     """What the steps of a lift share."""
 
-    def __init__(self, source: TriangleMesh, proxy: Proxy, target: TriangleMesh, search: ClosestPoints) -> None:
-        self.source, self.proxy, self.target, self.search = source, proxy, target, search
-        self.near: NearVertices | None = None
-
-    def restrict(self, target_proxy: Proxy, proxy_map: Ints) -> None:
-        """Look for a vertex only near to the match of its proxy vertex."""
-        self.target_proxy, self.near = target_proxy, NearVertices(target_proxy.mesh, _RINGS)
-        self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, target_proxy.mesh, self.near)
+    def __init__(
+        self,
+        source: tuple[TriangleMesh, Proxy],
+        target: tuple[TriangleMesh, Proxy],
+        proxy_map: Ints,
+        search: ClosestPoints,
+    ) -> None:
+        (self.source, self.proxy), (self.target, self.target_proxy), self.search = source, target, search
+        self.near = NearVertices(self.target_proxy.mesh, _RINGS)
+        self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, self.target_proxy.mesh, self.near)
 
     def _blended(self, motion: Floats, vertices: Ints) -> Floats:
         """Motion at vertices (q,) of the dense mesh, (q, 3, 4)."""
@@ -178,12 +178,10 @@ class _Lift:
         """Vertices of the target from which to search for those of the source, (q,), and which are astray, (q,)."""
         starts = self.search.nearest_vertices(positions)
         astray = np.einsum("qd,qd->q", normals, self.search.vertex_normals[starts]) < _NORMAL_GATE
-        if self.near is not None:
-            matched = self.proxy_map[self.proxy.points.nearest_vertices[vertices]]
-            far = ~self.near.pairs(matched, self.target_proxy.points.nearest_vertices[starts])
-            starts[far] = self.target_proxy.vertices[matched[far]]
-            astray |= far
-        return starts, astray
+        matched = self.proxy_map[self.proxy.points.nearest_vertices[vertices]]
+        far = ~self.near.pairs(matched, self.target_proxy.points.nearest_vertices[starts])
+        starts[far] = self.target_proxy.vertices[matched[far]]
+        return starts, astray | far
 
     def search_from(self, starts: Ints, positions: Floats, normals: Floats) -> tuple[Ints, Floats, Floats]:
         """Triangles (q,) and coordinates (q, 3) of the closest points, and how far the normals agree there, (q,)."""

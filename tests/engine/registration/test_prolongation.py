@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Maps of dense meshes from the match of coarse ones."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -67,8 +69,31 @@ def errors(points, source, target):
     return np.linalg.norm(points.interpolate(target.rest) - source.rest, axis=1) / np.sqrt(target.mesh.area)
 
 
+def lifted_steps(source, registered, target, *, proxy_map=None, search=None):
+    """Lift where the proxy was registered, to what is matched there, or else to what is nearest."""
+    if proxy_map is None:
+        proxy_map = ClosestPoints(target.proxy.mesh).nearest_vertices(registered)
+    return lift_steps(
+        source.mesh,
+        source.proxy,
+        registered,
+        target.mesh,
+        target_proxy=target.proxy,
+        proxy_map=proxy_map,
+        search=search or ClosestPoints(target.mesh),
+    )
+
+
+def lifted(*given, **options):
+    return run(lifted_steps(*given, **options))
+
+
+def for_itself(mesh):
+    return SimpleNamespace(mesh=mesh, proxy=Proxy.identity(mesh))
+
+
 def test_identity(source):
-    points = run(lift_steps(source.mesh, source.proxy, source.proxy.mesh.vertices, source.mesh))
+    points = lifted(source, source.proxy.mesh.vertices, source)
     assert_valid(points, source.mesh, source.mesh.vertex_count)
     moved = np.linalg.norm(points.positions - source.mesh.vertices, axis=1) / np.sqrt(source.mesh.area)
     assert moved.mean() < 3e-4
@@ -83,13 +108,13 @@ def test_a_mesh_that_stands_for_itself_goes_where_it_was_registered():
     target = TriangleMesh(*permuted(*icosphere(14))[:2])
     found = ClosestPoints(target).nearest(mesh.vertices)
     wanted = SurfacePoints.from_barycentric(target, found.triangles, found.barycentric).positions
-    points = run(lift_steps(mesh, Proxy.identity(mesh), wanted, target))
+    points = lifted(for_itself(mesh), wanted, for_itself(target))
     np.testing.assert_allclose(points.positions, wanted, atol=1e-9)
 
 
 def test_a_bend_is_recovered(source, target):
     registered = bent(source.proxy_rest(), target)
-    points = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    points = lifted(source, registered, target)
     assert_valid(points, target.mesh, source.mesh.vertex_count)
     error = errors(points, source, target)
     assert error.mean() < 2e-3
@@ -104,7 +129,7 @@ def test_a_bend_is_recovered(source, target):
 def test_a_noisy_registration_does_not_make_the_map_blocky(source, target):
     noise = np.random.default_rng(0).normal(size=source.proxy.mesh.vertices.shape) * 0.003
     registered = bent(source.proxy_rest(), target) + noise * np.sqrt(target.mesh.area)
-    points = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    points = lifted(source, registered, target)
     assert errors(points, source, target).mean() < 4e-3
     ratio = stretch(points, source.mesh)
     assert np.sqrt((ratio**2).mean()) < 1.15
@@ -117,7 +142,7 @@ def test_dense_against_coarse(dense, coarse):
     assert first.proxy.is_identity == (dense < coarse)
     assert second.proxy.is_identity == (dense > coarse)
     registered = bent(first.proxy_rest(), second)
-    points = run(lift_steps(first.mesh, first.proxy, registered, second.mesh))
+    points = lifted(first, registered, second)
     assert_valid(points, second.mesh, first.mesh.vertex_count)
     # A coarse mesh is no nearer to the surface than its own edges tell.
     assert errors(points, first, second).mean() < 8e-3
@@ -127,26 +152,27 @@ def test_dense_against_coarse(dense, coarse):
 
 def test_a_moved_and_scaled_target_gets_the_same_map(source, target):
     registered = bent(source.proxy_rest(), target)
-    first = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    first = lifted(source, registered, target)
     turn = rotation([1, 2, -1], 0.9).T * 100
     moved = TriangleMesh(target.mesh.vertices @ turn + [10, -20, 5], target.mesh.triangles)
-    second = run(lift_steps(source.mesh, source.proxy, registered @ turn + [10, -20, 5], moved))
+    moved = SimpleNamespace(mesh=moved, proxy=run(proxy_steps(moved, PROXY)))
+    second = lifted(source, registered @ turn + [10, -20, 5], moved)
     far = np.linalg.norm(second.interpolate(target.mesh.vertices) - first.positions, axis=1)
     assert np.quantile(far, 0.999) < 1e-4
 
 
 def test_the_order_of_the_target_does_not_matter(source, target):
     registered = bent(source.proxy_rest(), target)
-    first = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
+    first = lifted(source, registered, target)
     other = TriangleMesh(*permuted(target.mesh.vertices, target.mesh.triangles)[:2])
-    second = run(lift_steps(source.mesh, source.proxy, registered, other))
+    second = lifted(source, registered, SimpleNamespace(mesh=other, proxy=run(proxy_steps(other, PROXY))))
     assert np.quantile(np.linalg.norm(second.positions - first.positions, axis=1), 0.999) < 1e-4
 
 
 def test_a_search_can_be_shared_and_the_map_is_reproducible(source, target):
     registered = bent(source.proxy_rest(), target)
-    first = run(lift_steps(source.mesh, source.proxy, registered, target.mesh))
-    second = run(lift_steps(source.mesh, source.proxy, registered, target.mesh, search=ClosestPoints(target.mesh)))
+    search = ClosestPoints(target.mesh)
+    first, second = (lifted(source, registered, target, search=search) for _ in range(2))
     np.testing.assert_array_equal(first.triangles, second.triangles)
     np.testing.assert_array_equal(first.barycentric, second.barycentric)
 
@@ -158,40 +184,22 @@ def rolled(part, layers=3, gap=0.06):
     return np.stack([radius * np.cos(angle), part[:, 1] * 0.5, radius * np.sin(angle)], axis=1)
 
 
-def test_with_a_map_of_the_proxies_surfaces_close_in_space_are_not_confused():
+def test_by_the_map_of_the_proxies_surfaces_close_in_space_are_not_confused():
     vertices, triangles = plane(60)
     sheet = TriangleMesh(rolled(vertices), triangles)
-    proxy = Proxy.identity(sheet)
     # Laid a little nearer to the next layer.
     away = 0.033 * sheet.vertices * [1, 0, 1]
     away /= np.linalg.norm(sheet.vertices * [1, 0, 1], axis=1, keepdims=True)
     registered = sheet.vertices + away
-    loose = run(lift_steps(sheet, proxy, registered, sheet))
-    led = run(lift_steps(sheet, proxy, registered, sheet, target_proxy=proxy, proxy_map=np.arange(sheet.vertex_count)))
-    wrong = [np.linalg.norm(points.interpolate(vertices) - vertices, axis=1) > 0.15 for points in (loose, led)]
+    roll = for_itself(sheet)
+    misled = lifted(roll, registered, roll)
+    led = lifted(roll, registered, roll, proxy_map=np.arange(sheet.vertex_count))
+    wrong = [np.linalg.norm(points.interpolate(vertices) - vertices, axis=1) > 0.15 for points in (misled, led)]
     assert wrong[0].mean() > 0.2
     assert wrong[1].mean() < 0.01
 
 
-def test_with_a_map_of_the_proxies_a_good_registration_stays_good(source, target):
-    registered = bent(source.proxy_rest(), target)
-    proxy_map = ClosestPoints(target.proxy.mesh).nearest_vertices(registered)
-    points = run(
-        lift_steps(
-            source.mesh,
-            source.proxy,
-            registered,
-            target.mesh,
-            target_proxy=target.proxy,
-            proxy_map=proxy_map,
-        )
-    )
-    assert errors(points, source, target).mean() < 2e-3
-    assert np.sqrt((stretch(points, source.mesh) ** 2).mean()) < 1.1
-    assert flipped(points, source.mesh, target.mesh) < 2e-3
-
-
 def test_progress_grows(source):
-    fractions = [p.fraction for p in lift_steps(source.mesh, source.proxy, source.proxy.mesh.vertices, source.mesh)]
+    fractions = [p.fraction for p in lifted_steps(source, source.proxy.mesh.vertices, source)]
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] <= fractions[-1] <= 1

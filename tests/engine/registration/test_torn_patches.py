@@ -7,6 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
 from engine import TriangleMesh
+from engine.mesh.closest_points import ClosestPoints
 from engine.registration.prolongation import lift_steps
 from engine.registration.torn_patches import NearVertices, with_patches_mended
 from engine.runtime.progress import run
@@ -82,7 +83,8 @@ def test_long_edges_are_not_torn_where_the_target_has_many_vertices_between_thei
 def test_a_lift_keeps_to_the_layer_that_the_surroundings_are_on(roll):
     images, patch = torn(roll, 1)
     identity = Proxy.identity(roll)
-    points = run(lift_steps(roll, identity, roll.vertices, roll, target_proxy=identity, proxy_map=images))
+    ends = roll, identity, roll.vertices, roll
+    points = run(lift_steps(*ends, target_proxy=identity, proxy_map=images, search=ClosestPoints(roll)))
     gaps = np.linalg.norm(points.positions - roll.vertices, axis=1)
     assert gaps[patch].max() < 0.5 * roll.edge_lengths.mean()
     assert (points.nearest_vertices[patch] < (AROUND // 2) * ACROSS).all()
