@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
@@ -33,6 +35,16 @@ _BLOCK = 4096
 
 _FLAT = 1e-4
 """Part of the largest variance that points have along every axis at least: rounding decides below."""
+
+_FEWEST = 4
+"""Pairs of ends of limbs that are needed: three are in a plane, which does not tell front from back."""
+
+_ALIKE = 0.8
+"""Agreement of the ends of limbs, see `paired_points`, from which on bodies stand alike.  By prominent ends, a figure
+with a large head and realistic persons have 0.90 to 0.93, persons among each other 0.99 and more, four-legged animals
+0.79 to 0.98; an animal or a person and a bird, a fish or a spider have 0.76 at most, a person and a four-legged animal
+less (18 characters, tried once).  By bones, people of six makers have 0.93 to 1.00, four-legged animals of three 0.84
+to 0.95, a person and an animal 0.75 at most, a bird and a shark 0.82 (70 pairs, tried once)."""
 
 
 def agreement_in_place(points: Floats, images: Floats, weights: Floats, *, half_turn: bool = False) -> float:
@@ -87,6 +99,36 @@ def paired_points(here: Floats, there: Floats) -> tuple[Ints, Ints, float]:
     first, second = linear_sum_assignment(np.square(here[:, None] - there).sum(axis=2))
     total = float(np.square(here).sum() + np.square(there).sum())
     return first, second, 2 * float((here[first] * there[second]).sum()) / max(total, TINY)
+
+
+def alike_points(turned: Iterable[Floats], there: Floats) -> Ints:
+    """Pair the points of two clouds where both are alike, as the ends of limbs are of bodies that stand alike.
+
+    Parameters
+    ----------
+    turned : iterable of (n, 3) arrays of float
+        The points of one cloud, in each way in which it may be turned; see `paired_points`.
+    there : (m, 3) array of float
+        Those of the other.
+
+    Returns
+    -------
+    (k, 2) array of int
+        The pairs of the way that agrees best, four at least; none if the clouds are not alike.
+    """
+    first, second, agreement = max((paired_points(here, there) for here in turned), key=lambda pairs: pairs[2])
+    pairs = np.column_stack([first, second])
+    return pairs if len(pairs) >= _FEWEST and agreement >= _ALIKE else pairs[:0]
+
+
+def in_unit_spread(points: Floats, weights: Floats) -> Floats:
+    """Move points (n, 3) so that their mean is the origin and the mean square of the distance from it one, as weighed.
+
+    There may be none.
+    """
+    shares = weights / max(float(weights.sum()), TINY)
+    offsets = points - shares @ points
+    return np.asarray(offsets / max(float(np.sqrt(shares @ np.square(offsets).sum(axis=1))), TINY))
 
 
 def nearest_similarity(

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..dense.credibility import DOUBTFUL
-from ..geometry.procrustes import paired_points
-from ..runtime.arrays import Floats, Ints
+from ..geometry.procrustes import alike_points, in_unit_spread
+from ..runtime.arrays import Ints
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
 from ..shapes.borders import has_border
@@ -27,15 +27,6 @@ _ALONE = 0.2
 """Part of a body in pieces without a counterpart from which on its main part was taken for something else, such as a
 head for all of a body, if the match is doubtful.  Without it, the knight of ``python -m tests.benchmarks.maker_rigs``
 has no limb bone right on the Mesh2Motion man."""
-
-_FEWEST = 4
-"""Pairs of them that are needed: three are in a plane, which does not tell front from back."""
-
-_ALIKE = 0.8
-"""Agreement of the ends of limbs, see `standing_ends`, from which on bodies stand alike: a figure with a large head and
-realistic persons have 0.90 to 0.93, persons among each other 0.99 and more, four-legged animals 0.79 to 0.98; an animal
-or a person and a bird, a fish or a spider have 0.76 at most, a person and a four-legged animal less (18 characters,
-tried once)."""
 
 _NOTE = "The shapes have little in common: the ends of their limbs were taken for the same where both stand alike."
 
@@ -104,18 +95,9 @@ def standing_ends(x: Shape, y: Shape) -> Ints:
         have none.
     """
     numbers = prominent_ends(x), prominent_ends(y)
-    none = np.empty((0, 2), np.int64)
-    if min(map(len, numbers)) < _FEWEST:
-        return none
-    here, there = (_placed(shape)[shape.samples.vertices[n]] for shape, n in zip((x, y), numbers, strict=True))
-    first, second, agreement = paired_points(here, there)
-    return np.column_stack([numbers[0][first], numbers[1][second]]) if agreement >= _ALIKE else none
-
-
-def _placed(shape: Shape) -> Floats:
-    """Move vertices so that the centre is the origin and the mean square of the distance from it one, by area."""
-    mesh = shape.mesh
-    shares = mesh.vertex_areas / mesh.vertex_areas.sum()
-    offsets = mesh.vertices - shares @ mesh.vertices
-    placed: Floats = offsets / np.sqrt(shares @ np.square(offsets).sum(axis=1))
-    return placed
+    here, there = (
+        in_unit_spread(shape.mesh.vertices, shape.mesh.vertex_areas)[shape.samples.vertices[n]]
+        for shape, n in zip((x, y), numbers, strict=True)
+    )
+    first, second = alike_points([here], there).T
+    return np.column_stack([numbers[0][first], numbers[1][second]])

@@ -9,9 +9,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...geometry.best_distinct import best_distinct
-from ...geometry.procrustes import paired_points
+from ...geometry.procrustes import alike_points, in_unit_spread
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints
+from ...runtime.arrays import Ints
 from ..rig.skeleton import Skeleton
 from .mirrored_bones import mirrored_bones
 
@@ -19,13 +19,8 @@ _BESIDE = 0.12
 """How near ends are, in units of the largest extent of the body, that belong to one limb: fingers of eight people are
 at most 0.07 apart, and so are feet, but these are mirror images of each other (tried once)."""
 
-_MOST, _FEWEST = 16, 4
-"""Ends that are looked at, and that two bodies must have to be compared, by hand: three are always in a plane."""
-
-_ALIKE = 0.8
-"""Agreement of the ends from which on bodies stand alike, see `paired_points`: people of six makers have 0.93 to 1.00,
-four-legged animals of three 0.84 to 0.95, a person and an animal 0.75 at most, a bird and a shark 0.82 (70 pairs, tried
-once)."""
+_MOST = 16
+"""Ends that are looked at, by hand."""
 
 _TURNS = np.array([[[c, -s, 0], [s, c, 0], [0, 0, 1]] for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1))], np.float64)
 """Ways in which a body may look, against another one: turns about the vertical axis."""
@@ -58,12 +53,12 @@ def paired_limb_tips(source: RiggedBody, target: RiggedBody) -> Ints:
     """
     bodies = source, target
     tips = [_limb_tips(body) for body in bodies]
-    none = np.empty((0, 2), np.int64)
-    if min(map(len, tips)) < _FEWEST:
-        return none
-    here, there = (_placed(body.mesh.vertices[vertices]) for body, vertices in zip(bodies, tips, strict=True))
-    first, second, agreement = max((paired_points(here @ turn.T, there) for turn in _TURNS), key=lambda pair: pair[2])
-    return np.column_stack([tips[0][first], tips[1][second]]) if agreement >= _ALIKE else none
+    here, there = (
+        in_unit_spread(body.mesh.vertices[vertices], np.ones(len(vertices)))
+        for body, vertices in zip(bodies, tips, strict=True)
+    )
+    first, second = alike_points((here @ turn.T for turn in _TURNS), there).T
+    return np.column_stack([tips[0][first], tips[1][second]])
 
 
 def _limb_tips(body: RiggedBody) -> Ints:
@@ -99,10 +94,3 @@ def _strongest(weights: csr_array) -> Ints:
     found = np.full(weights.shape[0], -1)
     found[rows[order]] = weights.indices[order]  # the last one of each row stays
     return found
-
-
-def _placed(points: Floats) -> Floats:
-    """Move points so that their mean is the origin, and the mean square of the distance from it one."""
-    offsets = points - points.mean(axis=0)
-    placed: Floats = offsets / max(float(np.sqrt(np.square(offsets).sum(axis=1).mean())), TINY)
-    return placed
