@@ -54,8 +54,12 @@ def edge_chains(edges: Ints) -> list[tuple[list[int], list[int]]]:
 
 
 def way_to_root(before: NDArray[np.integer[Any]], vertex: int) -> list[int]:
-    """Follow a tree from a vertex to its root, by the vertex before each one; that of the root is negative."""
-    way = [int(vertex)]
-    while before[way[-1]] >= 0:
-        way.append(int(before[way[-1]]))
-    return way
+    """Follow a tree from a vertex to its root, by the vertex before each one, or in a ring once around.
+
+    That before the root is negative; from there the way is empty.
+    """
+    way: dict[int, None] = {}
+    while vertex >= 0 and vertex not in way:
+        way[int(vertex)] = None
+        vertex = int(before[vertex])
+    return list(way)

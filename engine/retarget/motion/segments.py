@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...mesh.connectivity.components import joined_components
+from ...mesh.connectivity.edge_chains import way_to_root
 from ...runtime.arrays import Bools, Floats, Ints
 from ..rig.skeleton import Skeleton
 from .posed_motion import Motion
@@ -224,9 +225,4 @@ def _without_loops(parents: Ints) -> Ints:
 
 def ways_up(parents: Ints, part: int) -> list[int]:
     """All that one hangs on, the nearest first, until the top or until they repeat."""
-    found: list[int] = []
-    above = int(parents[part])
-    while above >= 0 and above not in found:
-        found.append(above)
-        above = int(parents[above])
-    return found
+    return way_to_root(parents, int(parents[part]))

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from engine.mesh.connectivity.edge_chains import edge_chains
+from engine.mesh.connectivity.edge_chains import edge_chains, way_to_root
 
 
 def test_chains_end_at_ends_and_junctions():
@@ -18,3 +18,10 @@ def test_chains_end_at_ends_and_junctions():
         for number, ends in zip(numbers, pairwise(vertices), strict=True):
             assert set(edges[number]) == set(ends)
     assert edge_chains(np.zeros((0, 2), int)) == []
+
+
+def test_a_way_leads_to_the_root_and_once_around_a_ring():
+    before = np.array([-1, 0, 1, 4, 5, 3])
+    assert way_to_root(before, 2) == [2, 1, 0]
+    assert way_to_root(before, 4) == [4, 5, 3]
+    assert way_to_root(before, -1) == []
