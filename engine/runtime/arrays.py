@@ -86,6 +86,16 @@ def shares_along(points: Floats, starts: Floats, ways: Floats) -> Floats:
     return (((points - starts) * ways).sum(axis=-1) / squares).clip(0, 1)
 
 
+def spread_rows(rows: Floats, first: int, most: int, least: float = 0.0) -> Ints:
+    """Pick rows of (n, d), from the first on each the farthest from those before, until none is far any more: (k,)."""
+    chosen = [first]
+    away = np.square(rows - rows[first]).sum(axis=1)
+    while len(chosen) < most and away.max() > least**2:
+        chosen.append(int(away.argmax()))
+        away = np.minimum(away, np.square(rows - rows[chosen[-1]]).sum(axis=1))
+    return np.array(chosen)
+
+
 def squared_differences(first: NDArray[Any], second: NDArray[Any]) -> NDArray[Any]:
     """Squared Euclidean distance of every row of `first` (n, d) from every row of `second` (m, d): (n, m)."""
     square = np.square(first).sum(axis=1)[:, None] + np.square(second).sum(axis=1) - 2 * first @ second.T

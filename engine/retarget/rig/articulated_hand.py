@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, group_sums, squared_differences, unit_vectors
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, spread_rows, squared_differences, unit_vectors
 from .digit_groups import DigitGroup
 from .skeleton import Skeleton
 
@@ -116,9 +116,9 @@ class Hand:
             return None
         numbers = np.array([group.above, *group.bones])
         chosen = np.flatnonzero(belongs)
-        chosen = chosen[_spread_out(body.vertices[chosen], _SAMPLES)]
+        chosen = chosen[_spread_out(body.vertices[chosen])]
         seen = np.flatnonzero(there)
-        seen = seen[_spread_out(target.vertices[seen], _SAMPLES)]
+        seen = seen[_spread_out(target.vertices[seen])]
         shares = weights[chosen][:, numbers].toarray()
         shares /= np.maximum(shares.sum(axis=1, keepdims=True), TINY)
         return cls(
@@ -134,18 +134,12 @@ class Hand:
         )
 
 
-def _spread_out(points: Floats, count: int) -> Ints:
-    """Choose so many points, each the farthest from those before it."""
-    if len(points) <= count:
+def _spread_out(points: Floats) -> Ints:
+    """Choose a part of the points, from the outermost on."""
+    if len(points) <= _SAMPLES:
         return np.arange(len(points))
-    chosen = np.empty(count, np.int64)
-    nearest = np.square(points - points.mean(axis=0)).sum(axis=1)
-    chosen[0] = nearest.argmax()
-    nearest = np.full(len(points), np.inf)
-    for number in range(1, count):
-        nearest = np.minimum(nearest, np.square(points - points[chosen[number - 1]]).sum(axis=1))
-        chosen[number] = nearest.argmax()
-    return chosen
+    outermost = np.square(points - points.mean(axis=0)).sum(axis=1).argmax()
+    return spread_rows(points, int(outermost), _SAMPLES)
 
 
 class HandSolver:

@@ -15,7 +15,7 @@ from ...geometry.procrustes import nearest_orthogonal
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints, spread_rows
 from ...runtime.errors import MeshError
 from ..rig.fitted_rig import FittedRig
 
@@ -185,21 +185,12 @@ def evened_frames(mesh: TriangleMesh, frames: LocalFrames) -> LocalFrames:
     spread = _spreader(mesh, _WIDE)
     columns = np.concatenate([flat, np.ones((len(flat), 1))], axis=1) * mesh.vertex_areas[:, None]
     sums = 1e-9 * np.concatenate([flat, np.ones((len(flat), 1))], axis=1)  # its own, where nothing is around
-    for chosen in _unlike(flat):
+    # Each is the farthest from those before, so that all others are like one of them.
+    for chosen in spread_rows(flat, 0, _MOST_ROTATIONS, _ALIKE):
         alike = np.exp(-np.square(flat - flat[chosen]).sum(axis=1) / (2 * _ALIKE**2))[:, None]
         sums += alike * spread.solve(alike * columns)
     evened = (sums[:, :9] / sums[:, 9:])[bearers(mesh)].reshape(-1, 3, 3)
     return replace(frames, rotations=nearest_orthogonal(evened, float(np.sign(np.linalg.det(frames.rotations[0])))))
-
-
-def _unlike(rotations: Floats) -> list[int]:
-    """Pick rotations out of (n, 9), each the farthest from those before, so that all others are like one of them."""
-    chosen = [0]
-    away = np.linalg.norm(rotations - rotations[0], axis=1)
-    while away.max() > _ALIKE and len(chosen) < _MOST_ROTATIONS:
-        chosen.append(int(away.argmax()))
-        away = np.minimum(away, np.linalg.norm(rotations - rotations[chosen[-1]], axis=1))
-    return chosen
 
 
 def bearers(mesh: TriangleMesh) -> Ints:

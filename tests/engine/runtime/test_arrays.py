@@ -14,6 +14,7 @@ from engine.runtime.arrays import (
     numbered,
     ranges,
     slices,
+    spread_rows,
     squared_differences,
     unit_vectors,
 )
@@ -103,3 +104,10 @@ def test_exchanging_the_arrays_transposes():
     rng = np.random.default_rng(2)
     first, second = rng.random((6, 5)), rng.random((8, 5))
     np.testing.assert_allclose(squared_differences(first, second), squared_differences(second, first).T, atol=1e-14)
+
+
+def test_rows_are_picked_each_the_farthest_from_those_before():
+    rows = np.array([[0.0, 0], [1, 0], [10, 0], [10, 0], [0, 4]])
+    assert spread_rows(rows, 0, 3).tolist() == [0, 2, 4]
+    assert spread_rows(rows, 0, 5).tolist() == [0, 2, 4, 1]  # what lies on another row is never picked
+    assert spread_rows(rows, 1, 5, least=5.0).tolist() == [1, 2]
