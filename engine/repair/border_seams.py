@@ -14,7 +14,7 @@ from ..mesh.connectivity.adjacency import pair_matrix
 from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.triangle_mesh import triangle_areas
-from ..runtime.arrays import Bools, Floats, Ints, group_sums, marked, unit_vectors
+from ..runtime.arrays import Bools, Floats, Ints, evenly, group_sums, marked, unit_vectors
 
 _SMALLEST = 0.01
 """Area of a piece that is joined to others, as a part of the whole: lashes and buttons lie on something."""
@@ -158,7 +158,7 @@ def _on_others(vertices: Floats, borders: _Borders, first: Ints, second: Ints, r
     lying = np.zeros(len(kinds), bool)
     for kind, pair in enumerate(kinds):
         smaller, larger = sorted((np.flatnonzero(borders.owners == piece) for piece in pair), key=len)
-        some = smaller[np.linspace(0, len(smaller) - 1, min(len(smaller), _LYING_POINTS)).astype(np.int64)]
+        some = smaller[evenly(len(smaller), _LYING_POINTS)]
         near = np.isfinite(cKDTree(vertices[larger]).query(vertices[some], distance_upper_bound=reach)[0])
         lying[kind] = near.mean() > _LYING
     return lying[number.reshape(-1)]

@@ -74,6 +74,11 @@ def slices(count: int, size: int) -> Iterator[slice]:
     return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
 
+def evenly(count: int, most: int) -> Ints:
+    """Choose so many of some numbers from 0 on at most, evenly: (k,)."""
+    return np.linspace(0, count - 1, min(count, most)).astype(np.int64)
+
+
 def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:
     """Scale vectors (n, d) to length one; those that are no longer than `least` become zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)

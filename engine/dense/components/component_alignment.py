@@ -15,7 +15,7 @@ from ...mesh.closest_points import ClosestPoints, FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import DeformableSurface
 from ...registration.registration import FINE, LAST, Stage, register_steps
-from ...runtime.arrays import TINY, Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints, evenly
 from ...runtime.progress import Steps, in_turn
 from .component_pairs import PartPair
 from .similarity_field import Surroundings
@@ -185,7 +185,7 @@ class _Points(NamedTuple):
 
 def _points(mesh: TriangleMesh, places: Floats, normals: Floats, most: int) -> _Points:
     """Take evenly numbered vertices, so many at most, of a mesh that has been moved to places and normals (n, 3)."""
-    chosen = np.linspace(0, mesh.vertex_count - 1, min(mesh.vertex_count, most)).astype(int)
+    chosen = evenly(mesh.vertex_count, most)
     areas = mesh.vertex_areas[chosen] + 1e-9 * mesh.area
     return _Points(places[chosen], normals[chosen], areas / areas.sum())
 

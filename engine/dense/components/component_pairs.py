@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from ...geometry.procrustes import least_turns
 from ...mesh.connectivity.adjacency import edge_graph
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
+from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, unit_vectors
 from .similarity_field import Surroundings
 
 _LARGEST_OFFSET = 1.5
@@ -236,16 +236,12 @@ def _worn(
         tree, area = cKDTree(places), float(np.median(carry.scales)) ** 2 * part.area  # between fingers places are torn
         size = np.abs(np.log([area / partner.area for partner in partners])) / np.log(_LARGEST_RATIO)
         for j in np.flatnonzero(size <= 1):
-            ahead = trees[j].query(places[_some(part)])[0]
-            back, radius = tree.query(partners[j].vertices[_some(partners[j])])[0], radius_of(partners[j])
+            ahead = trees[j].query(places[evenly(part.vertex_count, _WORN_POINTS)])[0]
+            there, radius = partners[j].vertices, radius_of(partners[j])
+            back = tree.query(there[evenly(len(there), _WORN_POINTS)])[0]
             away = np.sqrt((np.square(ahead).mean() + np.square(back).mean()) / 2) / radius
             difference[i, j] = size[j] + away / _WORN if away < _WORN else np.inf
     return difference, lying
-
-
-def _some(part: TriangleMesh) -> Ints:
-    """Choose some vertices, evenly numbered."""
-    return np.linspace(0, part.vertex_count - 1, min(part.vertex_count, _WORN_POINTS)).astype(np.int64)
 
 
 def radius_of(part: TriangleMesh) -> float:

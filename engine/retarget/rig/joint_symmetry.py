@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.mirror_planes import MirrorPlane
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints
+from ...runtime.arrays import TINY, Floats, Ints, evenly
 from .skeleton import Skeleton
 
 _SAME = 1e-3
@@ -89,8 +89,7 @@ def _plane(heads: Floats, tails: Floats, partners: Ints, target: TriangleMesh, s
     if not (ends != mirrored).any():
         return None
     between = MirrorPlane.between(ends, mirrored, np.ones(len(ends)))
-    rows = np.linspace(0, target.vertex_count - 1, min(_SAMPLES, target.vertex_count)).astype(np.int64)
-    points, search = target.vertices[rows], ClosestPoints(target)
+    points, search = target.vertices[evenly(target.vertex_count, _SAMPLES)], ClosestPoints(target)
     extent = float(np.linalg.norm(np.ptp(target.vertices, axis=0)))
 
     def missed(plane: MirrorPlane) -> float:

@@ -12,7 +12,7 @@ from ...geometry.procrustes import across_axes, nearest_frame, nearest_orthogona
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints, group_means
+from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, group_means
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
@@ -235,8 +235,8 @@ class _Field:
     @classmethod
     def of(cls, source: TriangleMesh, target: TriangleMesh, there: SurfaceMap, back: SurfaceMap) -> _Field:
         """Take the vertices of both bodies with their images."""
-        forward = _some(source.vertex_count)
-        backward = _some(target.vertex_count)
+        forward = evenly(source.vertex_count, _MOST)
+        backward = evenly(target.vertex_count, _MOST)
         trust = [np.maximum(each.confidence, _LEAST_TRUST) * each.has_partner for each in (there, back)]
         shares = [
             part * mesh.vertex_areas[rows] * sure[rows] / mesh.area / max(len(rows), 1) * mesh.vertex_count
@@ -277,8 +277,3 @@ class _Field:
         turns = nearest_orthogonal(covariances, self.handedness)
         scales = np.einsum("kij,kij->k", turns, covariances) / np.maximum(spreads, TINY)
         return _Moved(there + scales[:, None] * np.einsum("kij,kj->ki", turns, points - here), turns, scales)
-
-
-def _some(count: int) -> Ints:
-    """Choose some of so many vertices, evenly by their numbers."""
-    return np.arange(count) if count <= _MOST else np.linspace(0, count - 1, _MOST).astype(np.int64)

@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from engine.runtime.arrays import (
+    evenly,
     group_largest,
     group_means,
     group_smallest,
@@ -111,3 +112,9 @@ def test_rows_are_picked_each_the_farthest_from_those_before():
     assert spread_rows(rows, 0, 3).tolist() == [0, 2, 4]
     assert spread_rows(rows, 0, 5).tolist() == [0, 2, 4, 1]  # what lies on another row is never picked
     assert spread_rows(rows, 1, 5, least=5.0).tolist() == [1, 2]
+
+
+def test_some_of_many_are_chosen_evenly_and_all_of_few():
+    assert evenly(3, 5).tolist() == [0, 1, 2]
+    assert evenly(101, 3).tolist() == [0, 50, 100]
+    assert evenly(0, 3).tolist() == []
