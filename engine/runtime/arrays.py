@@ -63,6 +63,13 @@ def group_extents(groups: Ints, points: Floats, count: int) -> Floats:
     return (high - low).max(axis=1)
 
 
+def weighted_quantile(values: Floats, weights: Floats, share: float = 0.5) -> float:
+    """Find the smallest of the values (k,) up to which lies such a share of their weights (k,), by default the half."""
+    order = np.argsort(values, kind="stable")
+    sums = np.cumsum(weights[order])
+    return float(values[order[min(int(np.searchsorted(sums, share * sums[-1])), len(order) - 1)]])
+
+
 def ranges(starts: Ints, counts: Ints) -> Ints:
     """List so many numbers, (k,), from each of some starts (k,) on, one range after the other."""
     before = np.cumsum(counts) - counts

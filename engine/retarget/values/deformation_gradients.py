@@ -15,7 +15,7 @@ from ...geometry.procrustes import nearest_orthogonal
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, spread_rows
+from ...runtime.arrays import TINY, Floats, Ints, spread_rows, weighted_quantile
 from ...runtime.errors import MeshError
 from ..rig.fitted_rig import FittedRig
 
@@ -117,7 +117,7 @@ def surface_frames(
     areas = np.maximum(mesh.triangle_areas, TINY)
     jacobians = after @ np.linalg.pinv(before)  # (m, 3, 3)
     grown = np.linalg.norm(np.cross(after[:, :, 0], after[:, :, 1]), axis=1) / (2 * areas)
-    grown = np.minimum(grown, _MOST_AREA * np.maximum(_median(grown, areas), TINY))
+    grown = np.minimum(grown, _MOST_AREA * np.maximum(weighted_quantile(grown, areas), TINY))
     stretches, overall = np.sqrt(grown), float(np.sqrt(areas @ grown / areas.sum()))
     columns = np.concatenate([jacobians.reshape(-1, 9), stretches[:, None]], axis=1) * areas[:, None]
     sums = np.stack([mesh.sum_at_vertices(column) for column in (columns / 3).T], axis=1)
@@ -230,13 +230,6 @@ def _sides(points: Floats, triangles: Ints, side: float) -> Floats:
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = side * normal / np.sqrt(np.maximum(length, TINY))
     return np.stack([first, second, normal], axis=2)
-
-
-def _median(values: Floats, weights: Floats) -> float:
-    """Median of values of such weights."""
-    order = np.argsort(values, kind="stable")
-    total = np.cumsum(weights[order])
-    return float(values[order[np.searchsorted(total, total[-1] / 2)]])
 
 
 def _spread(mesh: TriangleMesh, sums: Floats, radius: float) -> Floats:

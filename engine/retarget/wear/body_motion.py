@@ -14,7 +14,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, slices, unit_vectors
+from ...runtime.arrays import TINY, Floats, Ints, slices, unit_vectors, weighted_quantile
 from ..values.deformation_gradients import surface_frames
 
 _TURN_RADIUS = 0.02
@@ -271,10 +271,7 @@ class BodyMotion:
         weights = closeness[one] * closeness[other] * (before > 0)
         if not weights.sum() > 0:
             return self.overall
-        ratios = after / np.where(before > 0, before, 1.0)
-        order = np.argsort(ratios, kind="stable")
-        middle = np.searchsorted(np.cumsum(weights[order]), weights.sum() / 2)
-        return float(ratios[order][min(int(middle), len(order) - 1)])
+        return weighted_quantile(after / np.where(before > 0, before, 1.0), weights)
 
     def move(self, carriers: Carriers) -> Motion:
         """Move points along with what carries them."""

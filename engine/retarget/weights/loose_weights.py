@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...mesh.connectivity.welded_parts import WeldedParts
-from ...runtime.arrays import Floats, marked
+from ...runtime.arrays import Floats, marked, weighted_quantile
 from .skin_weights import with_rows
 from .weight_filling import continued
 
@@ -49,8 +49,7 @@ def with_loose_parts(weights: csr_array, confidence: Floats, parts: WeldedParts)
         return weights
     areas = parts.mesh.vertex_areas
     sizes = np.bincount(parts.vertex_labels, areas, parts.part_count)
-    order = np.argsort(confidence, kind="stable")
-    best = confidence[order][np.searchsorted(np.cumsum(areas[order]), _SUREST * areas.sum())]
+    best = weighted_quantile(confidence, areas, _SUREST)
     if best <= 0:
         return weights
     sure = parts.means @ confidence / best

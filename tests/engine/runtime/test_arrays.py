@@ -18,6 +18,7 @@ from engine.runtime.arrays import (
     spread_rows,
     squared_differences,
     unit_vectors,
+    weighted_quantile,
 )
 
 
@@ -118,3 +119,9 @@ def test_some_of_many_are_chosen_evenly_and_all_of_few():
     assert evenly(3, 5).tolist() == [0, 1, 2]
     assert evenly(101, 3).tolist() == [0, 50, 100]
     assert evenly(0, 3).tolist() == []
+
+
+def test_quantiles_count_values_as_often_as_they_weigh():
+    values, counts = np.array([5.0, 1.0, 3.0, 2.0]), np.array([1, 4, 2, 0])
+    assert weighted_quantile(values, counts) == np.quantile(np.repeat(values, counts), 0.5, method="inverted_cdf") == 1
+    assert [weighted_quantile(values, counts, share) for share in (0.0, 0.6, 0.9, 1.0)] == [1, 3, 5, 5]
