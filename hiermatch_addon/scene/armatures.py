@@ -208,7 +208,7 @@ def _part_weights(
 def _normalised(weights: csr_array) -> csr_array:
     """Scale rows of weights so that they sum to one, and leave out what is zero."""
     weights = weights.astype(np.float64)
-    totals = np.asarray(weights.sum(axis=1)).ravel()
+    totals = weights.sum(axis=1)
     scales = np.divide(1.0, totals, out=np.zeros_like(totals), where=totals > 0)
     scaled = csr_array(diags_array(scales) @ weights)
     scaled.eliminate_zeros()

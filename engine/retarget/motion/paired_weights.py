@@ -67,7 +67,7 @@ def paired_weights(
     columns = weights.tocsc()
     for members, chain in segments.chains(pairing.sources, pairing.places, bones):
         own = np.flatnonzero(np.isin(owners, members))
-        moved = np.asarray(columns[:, own].sum(axis=1)).ravel()
+        moved = columns[:, own].sum(axis=1)
         rows = np.flatnonzero(moved > 0)
         shares = _along(vertices[rows], chain, bones) if len(chain) > 1 else np.ones((len(rows), 1))
         for number, bone in enumerate(chain):

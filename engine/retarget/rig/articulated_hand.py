@@ -13,6 +13,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Floats, Ints, group_sums, spread_rows, squared_differences, unit_vectors
+from ..weights.skin_weights import row_sums
 from .digit_groups import DigitGroup
 from .skeleton import Skeleton
 
@@ -106,8 +107,8 @@ class Hand:
         tips = skeleton.tails[[chain[-1] for chain in group.chains]]
         wrist = skeleton.heads[group.hub]
         length = float(np.median(np.linalg.norm(tips - wrist, axis=1)))
-        own = np.asarray(weights[:, group.bones].sum(axis=1)).ravel()
-        above = np.asarray(weights[:, [group.above]].sum(axis=1)).ravel()
+        own = row_sums(weights[:, group.bones])
+        above = row_sums(weights[:, [group.above]])
         near = np.linalg.norm(body.vertices - wrist, axis=1) < length / 2
         belongs = (own > 0.5) | ((own + above > 0.5) & near)
         corners = body.triangles[matches.triangles]

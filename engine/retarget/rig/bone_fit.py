@@ -12,6 +12,7 @@ from scipy.sparse import csr_array, diags_array
 from ...geometry.procrustes import nearest_rotations, nearest_similarity
 from ...geometry.symmetric_factor import symmetric_factor
 from ...runtime.arrays import TINY, Floats, Ints, numbered, ranges
+from ..weights.skin_weights import row_sums
 from .skeleton import Skeleton
 
 _ROUNDS = 12
@@ -98,7 +99,7 @@ def fit_bones(
     BoneTransforms
         A bone that moves nothing follows its nearest ancestor that does, or else the whole body.
     """
-    areas = np.where(np.asarray(weights.sum(axis=1)).ravel() > 0, areas, 0.0)
+    areas = np.where(row_sums(weights) > 0, areas, 0.0)
     areas = areas / areas.sum()
     active = np.flatnonzero(areas @ weights > _WEIGHTLESS * areas[areas > 0].min())
     place = np.append(numbered(active, len(skeleton)), len(active))  # the last for the body as a whole
@@ -115,7 +116,7 @@ def fit_bones(
     rotations = nearest_rotations(linear)
     scales = np.einsum("kij,kij->k", rotations, linear) / 3
     posed = skinned(vertices, weights, linear, translations)
-    loose = np.asarray(weights.sum(axis=1)).ravel() <= 0
+    loose = row_sums(weights) <= 0
     posed[loose] = vertices[loose] @ whole[0].T + whole[1]
     return BoneTransforms(linear, translations, rotations, scales, posed)
 

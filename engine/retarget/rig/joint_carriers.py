@@ -113,7 +113,7 @@ def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:
     """Sum the area that each bone moves, (b,); zero for those that move nothing to speak of."""
     if source.vertex_count != rig.weights.shape[0]:
         raise RigError(f"The rig moves {rig.weights.shape[0]} vertices, but the body has {source.vertex_count}.")
-    moving = np.asarray(rig.weights.sum(axis=0)).ravel() > _MOVES_NOTHING
+    moving = rig.weights.sum(axis=0) > _MOVES_NOTHING
     masses = np.where(moving, np.maximum(source.vertex_areas @ rig.weights, TINY), 0.0)
     if not moving.any():
         raise RigError("No bone of the rig moves a vertex.")

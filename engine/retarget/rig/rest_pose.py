@@ -12,6 +12,7 @@ from ...mesh.connectivity.edge_chains import way_to_root
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats, Ints
 from ...runtime.errors import RigError
+from ..weights.skin_weights import row_sums
 from .bone_fit import skinned
 from .fitted_rig import FittedRig
 from .joint_carriers import carriers_of, moved_areas
@@ -219,5 +220,5 @@ def unposed(vertices: Floats, weights: csr_array, rest: RestPose) -> Floats:
     inverse = np.linalg.solve(blended, (vertices - weights @ shifts)[:, :, None])[:, :, 0]
     way = rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads)
     forward = skinned(vertices, weights, rest.turns, way)
-    weighted = np.asarray(weights.sum(axis=1)).ravel() > 0
+    weighted = row_sums(weights) > 0
     return np.where(weighted[:, None], np.where(sound[:, None], inverse, forward), vertices)

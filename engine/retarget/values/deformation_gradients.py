@@ -18,6 +18,7 @@ from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Floats, Ints, spread_rows, weighted_quantile
 from ...runtime.errors import MeshError
 from ..rig.fitted_rig import FittedRig
+from ..weights.skin_weights import row_sums
 
 _RADIUS = 0.1
 """Over what distance Jacobians are averaged, in sqrt(area): about the size of a face, which turns as a whole."""
@@ -149,7 +150,7 @@ def bone_frames(rig: FittedRig, otherwise: LocalFrames) -> LocalFrames:
     weights = rig.weights
     if weights.shape[0] != len(otherwise):
         raise MeshError(f"The rig moves {weights.shape[0]} vertices, but the surface has {len(otherwise)}.")
-    total = np.asarray(weights.sum(axis=1)).ravel()
+    total = row_sums(weights)
     moved = total > 0
     blended = (weights @ rig.rotations.reshape(-1, 9)).reshape(-1, 3, 3)
     scales = np.divide(weights @ rig.scales, total, out=otherwise.scales.copy(), where=moved)

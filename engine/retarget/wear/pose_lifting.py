@@ -166,7 +166,7 @@ class _Cloth:
 
     def lift(self, shares: csr_array, lacking: Floats) -> None:
         """Move places (k, w) as far as is lacking (k, 3), as smoothly as that allows."""
-        spread = np.asarray((shares != 0).sum(axis=0)).ravel()
+        spread = (shares != 0).sum(axis=0)
         masses = shares @ (self.mass / np.maximum(spread, 1))
         chosen = np.flatnonzero(lacking.any(axis=1))
         rows = csr_array(shares[chosen])

@@ -132,5 +132,4 @@ def _shared_rows(votes: csr_array, rows: csr_array, rigid: Bools) -> tuple[Float
     )
     gathered = csr_array((np.ones(len(numbers), np.int64), (numbers, kinds.ravel())), shape=(len(rigid), len(examples)))
     counts = (votes @ gathered).toarray()
-    total = np.asarray(votes.sum(axis=1)).ravel()
-    return counts.max(axis=1) / np.maximum(total, 1), numbers[examples[counts.argmax(axis=1)]]
+    return counts.max(axis=1) / np.maximum(votes.sum(axis=1), 1), numbers[examples[counts.argmax(axis=1)]]

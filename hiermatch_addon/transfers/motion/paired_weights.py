@@ -103,7 +103,7 @@ class PairedWeightTransfer(Transfer):
         """Write the groups of the target's bones."""
         task = self._read_task
         written = task.columns.new & ~task.columns.locked
-        used = np.asarray((self._result != 0).sum(axis=0)).ravel() > 0
+        used = (self._result != 0).sum(axis=0) > 0
         present = {group.name for part in parts_of(target) for group in part.vertex_groups}
         numbers = [number for number in np.flatnonzero(written) if used[number] or task.names[number] in present]
         wanted, result = [task.names[number] for number in numbers], self._result.tocsr()[:, numbers]

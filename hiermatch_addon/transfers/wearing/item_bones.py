@@ -142,8 +142,8 @@ def read_item_bones(
     armature, other = find_armature(source), find_armature(target)
     if rig is None or armature is None or other is None:
         return None, ""
-    on_items = sum(np.asarray(in_columns(one, rig.names).sum(axis=0)).ravel() for one in items)
-    on_body = np.asarray(rig.weights.sum(axis=0)).ravel()
+    on_items = sum(in_columns(one, rig.names).sum(axis=0) for one in items)
+    on_body = rig.weights.sum(axis=0)
     found = bones_of_items(rig.skeleton.parents, on_body > 0, np.asarray(on_items) > 0)
     theirs = armature_of(other).bones
     lacking = [
