@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
-from scipy.sparse.linalg import splu
 
 from ...geometry.laplacian import laplace_beltrami
+from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, Ints, shares_along
 from ...runtime.errors import RigError
@@ -66,8 +66,7 @@ def standing_weights(mesh: TriangleMesh, skeleton: Skeleton, deforming: Bools) -
     extent = float(np.linalg.norm(np.ptp(mesh.vertices, axis=0)))
     heat = operator.mass / np.maximum(nearest[:, 0], 1e-4 * extent) ** 2
     heat[operator.mass <= 0] = 1.0
-    system = (operator.stiffness + diags_array(heat)).tocsc()
-    weights = splu(system).solve(heat[:, None] * shares)
+    weights = symmetric_factor(operator.stiffness + diags_array(heat)).solve(heat[:, None] * shares)
     weights[weights < _LEAST_WEIGHT] = 0.0
     weights /= weights.sum(axis=1, keepdims=True)
     kept = csr_array(weights)

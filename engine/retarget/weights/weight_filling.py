@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.sparse import csr_array, diags_array
-from scipy.sparse.linalg import splu
 from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
+from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, marked
@@ -110,7 +110,7 @@ def continued(values: csr_array, places: Bools, parts: WeldedParts, held: Floats
     columns = np.unique(right.indices)
     if not len(columns):
         return csr_array((len(unknown), values.shape[1]))
-    solved = splu(matrix.tocsc()).solve(right[:, columns].toarray())
+    solved = symmetric_factor(matrix).solve(right[:, columns].toarray())
     # Where more than two triangles meet in an edge, and by rounding, a little may be out of bounds.
     result = csr_array(np.where(solved < _LEAST_WEIGHT, 0.0, np.minimum(solved, most)))
     return csr_array((result.data, columns[result.indices], result.indptr), (len(unknown), values.shape[1]))
