@@ -30,6 +30,8 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.special import expit, logit
 
+from ..runtime.arrays import TINY
+
 _WEIGHTS = {"bijectivity": 0.25, "curvature": 1.0, "distances": 0.25, "rigidity": 3.0, "waves": 0.5}
 """Of the logarithms of the terms of a map.  Rigidity is the strongest cue against half turns; in distances and spectra
 these are hardly worse than the truth."""
@@ -156,7 +158,7 @@ def registered_score(score: float, gaps: tuple[float, float], credit: float = 0.
 
 def likeness(score: float, energy: float) -> float:
     """How much alike surfaces are if a map is right, by its `map_score` and what the deformation costs."""
-    return -(score + _ELASTIC_WEIGHT * float(np.log(max(energy, float(np.finfo(float).tiny)))))
+    return -(score + _ELASTIC_WEIGHT * float(np.log(max(energy, TINY))))
 
 
 def is_less_alike(known: float | None, least: float) -> bool:

@@ -240,8 +240,8 @@ class ClosestPoints:
         # and by as many threads as may be.
         many = len(points) >= _MANY
         order = spatial_order(points) if many else np.arange(len(points))
-        for start in range(0, len(points), _TREE_CHUNK):
-            part = order[start : start + _TREE_CHUNK]
+        for rows in slices(len(points), _TREE_CHUNK):
+            part = order[rows]
             query = points[part]
             if normals is not None and weight:
                 query = np.concatenate([query, weight * normals[part]], axis=1)

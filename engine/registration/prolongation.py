@@ -105,16 +105,14 @@ def lift_steps(
 
     positions, starts = np.empty((n, 3)), np.empty(n, np.int64)
     astray = np.empty(n, bool)
-    for start in range(0, n, _CHUNK):
-        yield Progress(0.25 + 0.2 * start / n, _LABEL)
-        part = np.arange(start, min(start + _CHUNK, n))
+    for part in slices(n, _CHUNK):
+        yield Progress(0.25 + 0.2 * part.start / n, _LABEL)
         positions[part], normals = lift.moved(motion, part)
         starts[part], astray[part] = lift.starts(part, positions[part], normals)
     starts = follow_neighbours(source, starts, astray)
     triangles, barycentric = np.empty(n, np.int64), np.empty((n, 3))
-    for start in range(0, n, _CHUNK):
-        yield Progress(0.45 + 0.4 * start / n, _LABEL)
-        part = np.arange(start, min(start + _CHUNK, n))
+    for part in slices(n, _CHUNK):
+        yield Progress(0.45 + 0.4 * part.start / n, _LABEL)
         triangles[part], barycentric[part], agreement = lift.search_from(
             starts[part], positions[part], lift.turned(motion, part)
         )
@@ -151,7 +149,7 @@ class _Lift:
         self.near = NearVertices(self.target_proxy.mesh, _RINGS)
         self.proxy_map = with_patches_mended(self.proxy.mesh, proxy_map, self.target_proxy.mesh, self.near)
 
-    def _blended(self, motion: Floats, vertices: Ints) -> Floats:
+    def _blended(self, motion: Floats, vertices: Ints | slice) -> Floats:
         """Motion at vertices (q,) of the dense mesh, (q, 3, 4)."""
         places = self.proxy.points
         corners, weights = places.corners[vertices], places.barycentric[vertices]
@@ -161,20 +159,20 @@ class _Lift:
             blended += weights[:, corner, None] * flat.take(corners[:, corner], axis=0)
         return blended.reshape(-1, 3, 4)
 
-    def moved(self, motion: Floats, vertices: Ints) -> tuple[Floats, Floats]:
+    def moved(self, motion: Floats, vertices: Ints | slice) -> tuple[Floats, Floats]:
         """Positions and normals of vertices (q,) after the motion, (q, 3) each."""
         blended = self._blended(motion, vertices)
         positions = np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertices[vertices]) + blended[:, :, 3]
         return positions, self._turned(blended, vertices)
 
-    def turned(self, motion: Floats, vertices: Ints) -> Floats:
+    def turned(self, motion: Floats, vertices: Ints | slice) -> Floats:
         """Turn the normals of vertices (q,) by the motion, (q, 3): cheaper to do again than to keep them."""
         return self._turned(self._blended(motion, vertices), vertices)
 
-    def _turned(self, blended: Floats, vertices: Ints) -> Floats:
+    def _turned(self, blended: Floats, vertices: Ints | slice) -> Floats:
         return unit_vectors(np.einsum("qab,qb->qa", blended[:, :, :3], self.source.vertex_normals[vertices]))
 
-    def starts(self, vertices: Ints, positions: Floats, normals: Floats) -> tuple[Ints, Bools]:
+    def starts(self, vertices: Ints | slice, positions: Floats, normals: Floats) -> tuple[Ints, Bools]:
         """Vertices of the target from which to search for those of the source, (q,), and which are astray, (q,)."""
         starts = self.search.nearest_vertices(positions)
         astray = np.einsum("qd,qd->q", normals, self.search.vertex_normals[starts]) < _NORMAL_GATE

@@ -294,7 +294,7 @@ def _main_first(work: _Work, areas: Floats) -> Ints:
     return np.concatenate([order[order == main], order[order != main]])
 
 
-_Piece = tuple["Floats", "Ints", "Ints", "Ints"]
+_Piece = tuple[Floats, Ints, Ints, Ints]
 
 
 def _filled(piece: _Piece, open_half_edges: Ints, area: float) -> tuple[_Piece, int, int]:

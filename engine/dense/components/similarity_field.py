@@ -15,7 +15,7 @@ from ...geometry.procrustes import nearest_rotations
 from ...mesh.closest_points import spatial_order
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, group_sums, unit_vectors
+from ...runtime.arrays import Floats, Ints, group_sums, slices, unit_vectors
 
 _NEIGHBOURS = 32
 """Places on the surface that a similarity is fitted to."""
@@ -138,8 +138,8 @@ class Surroundings:
         order = spatial_order(points)
         for number, level in enumerate(self._levels):
             chosen = order[levels[order] == number]
-            for start in range(0, len(chosen), _CHUNK):
-                part = chosen[start : start + _CHUNK]
+            for rows in slices(len(chosen), _CHUNK):
+                part = chosen[rows]
                 self._fit(result, part, points[part], reach[part], level)
         return result
 

@@ -190,7 +190,7 @@ def pair_bones(
         weights = nearest_bones(target, skeleton)
     placed = place_joints(rig, source, np.zeros_like(rig.skeleton.heads))
     there = carried(rig.weights, rig.target_to_source)
-    within_target = type(skeleton)(rig.skeleton.parents, placed.heads, placed.tails), skeleton
+    within_target = Skeleton(rig.skeleton.parents, placed.heads, placed.tails), skeleton
     mirrors = mirrored_bones(rig.skeleton), mirrored_bones(skeleton)
     found = _compared(there, weights, target, within_target, mirrors)
     gains = _gains(found.scores, fixed, alone)

@@ -12,7 +12,7 @@ from ...geometry.procrustes import across_axes, nearest_frame, nearest_orthogona
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, group_means
+from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, group_means, slices
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
@@ -117,10 +117,10 @@ def carry_standing_rig_steps(
     points = group_means(places, joints, len(counts))
     wanted = np.concatenate([points, (skeleton.heads + skeleton.tails) / 2])
     found = []
-    for start in range(0, len(wanted), _AT_ONCE):
-        yield Progress(0.9 * start / len(wanted), "Carrying joints")
-        found.append(field.at(wanted[start : start + _AT_ONCE]))
-    moved, turns, scales = (np.concatenate([getattr(part, name) for part in found]) for name in _Moved.__annotations__)
+    for part in slices(len(wanted), _AT_ONCE):
+        yield Progress(0.9 * part.start / len(wanted), "Carrying joints")
+        found.append(field.at(wanted[part]))
+    moved, turns, scales = (np.concatenate([getattr(each, name) for each in found]) for name in _Moved.__annotations__)
     heads, tails = np.split(moved[: len(points)][places], 2)
     turns, scales = turns[len(points) :], scales[len(points) :]
     yield Progress(0.9, "Carrying joints")
@@ -184,7 +184,7 @@ def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Flo
         best = float((here * there).sum() / max(np.square(here).sum(), TINY))
         scale = float(np.clip(best, whole / _MOST_SCALED, whole * _MOST_SCALED))
         way = goals.mean(axis=0) - scale * points.mean(axis=0)
-    return type(skeleton)(skeleton.parents, *(scale * ends + way for ends in (skeleton.heads, skeleton.tails)))
+    return Skeleton(skeleton.parents, *(scale * ends + way for ends in (skeleton.heads, skeleton.tails)))
 
 
 def _on_bones(skeleton: Skeleton, chosen: Bools) -> Floats:

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 from ...mesh.connectivity.components import joined_components
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Floats, Ints, group_sums, unit_vectors
+from ...runtime.arrays import TINY, Floats, Ints, group_sums, unit_vectors
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface
@@ -119,7 +119,7 @@ def _narrowness(mesh: TriangleMesh, joint: Floats, reach: float) -> float:
     if not len(chosen):
         return 0.0
     weights = mesh.vertex_areas[chosen]
-    return float(np.linalg.norm(weights @ unit_vectors(away[chosen])) / max(weights.sum(), 1e-300))
+    return float(np.linalg.norm(weights @ unit_vectors(away[chosen])) / max(weights.sum(), TINY))
 
 
 def _hole_radii(mesh: TriangleMesh) -> Floats:
