@@ -106,7 +106,9 @@ class _Carrier:
         matched = np.arange(min(_MATCHED, len(part.samples), len(offered)))
         self._first, self._second = np.triu_indices(len(matched), 1)
         self._whole, self._part = whole.samples.distances, part.samples.distances[:, : len(matched)]
-        self._part_sides = signed_areas(part.samples.directions[:, matched])
+        sides = signed_areas(part.samples.directions[:, matched])
+        self._part_rows = described(self._part, sides, _SIGNED_WEIGHT)
+        self._scouts = self._part_rows[:_SCOUTS].astype(np.float32)
         self._sides = signed_area_tables(whole.samples.directions[:, offered])
 
     def matchings(self, unit: float) -> Ints:
@@ -117,16 +119,12 @@ class _Carrier:
 
     def carried(self, images: Ints, unit: float) -> _Matching:
         """Carry a matching over to the scouts."""
-        rows = self._part_rows()[:_SCOUTS].astype(np.float32)
-        squares = squared_differences(rows, self._whole_rows(images, unit).astype(np.float32))
+        squares = squared_differences(self._scouts, self._whole_rows(images, unit).astype(np.float32))
         return _Matching(images, unit, float(squares.min(axis=1).mean()), squares.argmin(axis=1))
 
     def everywhere(self, matching: _Matching) -> Ints:
         """Carry a matching over to all samples of the part: numbers of samples of the whole."""
-        return cKDTree(self._whole_rows(matching.images, matching.unit)).query(self._part_rows())[1]
-
-    def _part_rows(self) -> Floats:
-        return described(self._part, self._part_sides, _SIGNED_WEIGHT)
+        return cKDTree(self._whole_rows(matching.images, matching.unit)).query(self._part_rows)[1]
 
     def _whole_rows(self, images: Ints, unit: float) -> Floats:
         sides = self._sides[:, images[self._first], images[self._second]]
