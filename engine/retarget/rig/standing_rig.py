@@ -12,7 +12,7 @@ from ...geometry.procrustes import across_axes, nearest_frame, nearest_orthogona
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, group_means, slices
+from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, group_means, marked, slices
 from ...runtime.background import can_go_beside
 from ...runtime.errors import RigError
 from ...runtime.progress import Progress, Steps, at_once
@@ -124,11 +124,11 @@ def carry_standing_rig_steps(
     heads, tails = np.split(moved[: len(points)][places], 2)
     turns, scales = turns[len(points) :], scales[len(points) :]
     yield Progress(0.9, "Carrying joints")
-    for bone in _roots_outside(skeleton, source):
-        turns[bone] = field.upright(frames)
+    outside = _roots_outside(skeleton, source)
+    turns[outside] = field.upright(frames)
     axes = skeleton.tails - skeleton.heads
     rigid = np.einsum("bij,bj->bi", turns, axes) * scales[:, None]
-    alone = np.isin(np.arange(len(axes)), _roots_outside(skeleton, source)) & (counts[np.split(places, 2)[1]] == 1)
+    alone = marked(outside, len(axes)) & (counts[np.split(places, 2)[1]] == 1)
     tails = np.where(alone[:, None], heads + rigid, tails)
     heads, tails = kept_bends(skeleton, heads, tails, turns, places)
     heads, tails = with_lengths(skeleton, heads, tails, rigid, places)
