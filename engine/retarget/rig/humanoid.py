@@ -78,13 +78,13 @@ def humanoid_bones(skeleton: Skeleton, deforming: Bools, up: Floats) -> dict[str
     hips, legs = tree.legs()
     trunk, arms, chest = tree.arms(hips, legs)
     _check_upright(tree, legs, arms)
-    forward = sum((tree.ends[way[-1]] - skeleton.heads[_leg(tree, way)[2]] for way in legs), np.zeros(3))
+    forward = sum((tree.bones.tails[way[-1]] - skeleton.heads[_leg(tree, way)[2]] for way in legs), np.zeros(3))
     forward -= (forward @ up) * up
     left = np.cross(up, forward)
     found = {"hips": trunk, **_named(("spine", "chest", "upper_chest"), _spine(tree, trunk, chest))}
     found |= _head(tree, chest, arms)
     for ways, part in ((legs, _leg), (arms, _arm)):
-        places = [tree.ends[way[-1]] @ left for way in ways]
+        places = [tree.bones.tails[way[-1]] @ left for way in ways]
         for side, way in zip(("right", "left"), (ways[number] for number in np.argsort(places)), strict=True):
             bones = part(tree, way)
             names = ("upper_leg", "lower_leg", "foot", "toes") if part is _leg else _ARM
@@ -107,8 +107,6 @@ class _Tree:
             if self.used[bone] and skeleton.parents[bone] >= 0:
                 self.used[skeleton.parents[bone]] = True
         self._children = [[int(c) for c in skeleton.children(b) if self.used[c]] for b in range(len(skeleton))]
-        # Importers make up tails: where bones go on, they end at the next joint.
-        self.ends = skeleton.tails.copy()
         self.leaves = [int(b) for b in np.flatnonzero(self.used) if not self._children[b]]
         self.heights = skeleton.heads @ up
         ends = np.concatenate([self.heights[deforming], (skeleton.tails @ up)[self.leaves]])
@@ -140,7 +138,7 @@ class _Tree:
 
     def level(self, bone: int) -> float:
         """Tell how low a bone reaches, in units of the height."""
-        ends = min(self.bones.heads[bone] @ self.up, self.ends[bone] @ self.up)
+        ends = min(self.bones.heads[bone] @ self.up, self.bones.tails[bone] @ self.up)
         return float((ends - self.low) / self.height)
 
     def legs(self) -> tuple[int, list[list[int]]]:
@@ -182,7 +180,7 @@ class _Tree:
 
     def reach(self, way: Sequence[int]) -> float:
         """Tell how long a chain is."""
-        joints = np.concatenate([self.bones.heads[list(way)], self.ends[way[-1:]]])
+        joints = np.concatenate([self.bones.heads[list(way)], self.bones.tails[way[-1:]]])
         return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
 
     def _longest(self, bone: int, child: int, among: list[int]) -> list[int]:
