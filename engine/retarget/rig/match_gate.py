@@ -43,7 +43,10 @@ class Homes:
 
     @classmethod
     def of(cls, body: TriangleMesh, target: TriangleMesh, matches: FoundPoints) -> Homes:
-        """Take the homes from a map: the points of the body, m, that belong to the target's vertices."""
+        """Take the homes from a map: the points of the body, m, that belong to the target's vertices.
+
+        Each is averaged with its neighbours, as often as triangles lead to them: twice but along a border.
+        """
         homes = matches.interpolate(body.triangles, body.vertices)
         ends = target.triangles.ravel(), np.roll(target.triangles, -1, axis=1).ravel()
         one_way = csr_array((np.ones(len(ends[0])), ends), shape=(len(homes), len(homes)))
