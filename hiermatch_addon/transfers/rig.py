@@ -79,7 +79,7 @@ class RigTransfer(Transfer):
         if rig is None:
             raise ObjectError(
                 f'No vertex of "{source.name}" is in a vertex group of a deforming bone of "{armature.name}", so it is '
-                "open what the bones belong to. Bind the Source to its armature with weights first."
+                "not known what the bones belong to. Bind the Source to its armature with weights first."
             )
         matrix = np.array(armature.matrix_world, np.float64)
         if abs(np.linalg.det(matrix[:3, :3])) <= np.finfo(float).tiny:

@@ -46,6 +46,9 @@ _PALM = 0.5
 
 _FINGERS = ("index", "middle", "ring", "little")
 
+_NO_LEGS = "The rig does not stand on two legs to which the feet belong, so its bones cannot be identified."
+_NO_ARMS = "The rig has no two arms, so its bones cannot be identified."
+
 
 def humanoid_bones(skeleton: Skeleton, deforming: Bools, up: Floats) -> dict[str, int]:
     """Find out what the bones of a person's rig are, whatever they are called.
@@ -153,9 +156,7 @@ class _Tree:
             if len(long) == 2 and (best < 0 or self.heights[bone] > self.heights[best]):
                 best, found = int(bone), long
         if best < 0 or min(self.heights[way].max() - self.low for way in found) < _ANKLE * self.height:
-            raise RigError(
-                "The rig does not stand on two legs to which the feet belong, so it is open what its bones are."
-            )
+            raise RigError(_NO_LEGS)
         return best, found
 
     def arms(self, hips: int, legs: list[list[int]]) -> tuple[int, list[list[int]], int]:
@@ -167,13 +168,13 @@ class _Tree:
         side = self.bones.heads[_leg(self, legs[0])[0]] - self.bones.heads[_leg(self, legs[1])[0]]
         tips = [tip for tip in self.tips(trunk) if tip not in taken]
         if len(tips) < 2:
-            raise RigError("The rig has no two arms, so it is open what its bones are.")
+            raise RigError(_NO_ARMS)
         out = [float(self.bones.heads[tip] @ side) for tip in tips]
         ends = tips[int(np.argmax(out))], tips[int(np.argmin(out))]
         chest = next(bone for bone in self.above(ends[0]) if bone in self.above(ends[1]))
         ways = [self.way(chest, end) for end in ends]
         if min(len(way) for way in ways) < 2 or chest in taken:
-            raise RigError("The rig has no two arms, so it is open what its bones are.")
+            raise RigError(_NO_ARMS)
         high = self.low + _ROOT * (min(self.heights[way].max() for way in legs) - self.low)
         trunk = next((b for b in (trunk, *self.way(trunk, chest)) if self.heights[b] > high), trunk)
         return trunk, ways, chest
@@ -213,8 +214,8 @@ def _check_upright(tree: _Tree, legs: list[list[int]], arms: list[list[int]]) ->
     lean = np.degrees(np.arctan2(np.linalg.norm(trunk - high * tree.up), high))
     if lean > _UPRIGHT:
         raise RigError(
-            f"From the hips to the shoulders the rig leans by {lean:.0f} degrees. No person stands like that, so it is "
-            "open what its bones are."
+            f"From the hips to the shoulders the rig leans by {lean:.0f} degrees. No person stands like that, so its "
+            "bones cannot be identified."
         )
 
 
@@ -250,7 +251,7 @@ def _leg(tree: _Tree, way: list[int]) -> list[int]:
     low = [n for n in range(first + 1, len(way)) if heights[n] < _ANKLE * heights[first]]
     ankle = low[0] if low and low[0] > first + 1 else min(first + 2, len(way) - 1)
     if ankle < first + 2:
-        raise RigError("The rig does not stand on two legs to which the feet belong, so it is open what its bones are.")
+        raise RigError(_NO_LEGS)
     knee = first + tree.middle(way[first:ankle], way[ankle])
     toes = way[ankle + 1] if ankle + 1 < len(way) else -1
     return [way[first], way[knee], way[ankle], toes]

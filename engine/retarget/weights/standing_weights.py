@@ -57,7 +57,7 @@ def standing_weights(mesh: TriangleMesh, skeleton: Skeleton, deforming: Bools) -
     """
     bones = np.flatnonzero(deforming)
     if not len(bones):
-        raise RigError("No bone deforms, so it is open what the bones belong to.")
+        raise RigError("No bone deforms, so it is not known what the bones belong to.")
     distances = _distances(mesh, skeleton, bones)
     nearest = distances.min(axis=1, keepdims=True)
     sharing = distances <= _ALIKE * nearest

@@ -2387,8 +2387,8 @@ MESSAGES: Final[dict[str, str]] = {
         "のソースを選んでください。"
     ),
     (
-        'No vertex of "{0}" is in a vertex group of a deforming bone of "{1}", so it is open what the bones '
-        "belong to. Bind the Source to its armature with weights first."
+        'No vertex of "{0}" is in a vertex group of a deforming bone of "{1}", so it is not known what the '
+        "bones belong to. Bind the Source to its armature with weights first."
     ): (
         "「{0}」のどの頂点も「{1}」の変形ボーンの頂点グループに入っておらず、ボーンの対応が決まりません。先に"
         "ソースをウェイトでアーマチュアに関連付けてください。"

@@ -1946,8 +1946,8 @@ MESSAGES: Final[dict[str, str]] = {
         "pick another Source."
     ): "“{0}”没有骨架，因此没有可适配的绑定。请为其添加骨架修改器，或选择另一个源。",
     (
-        'No vertex of "{0}" is in a vertex group of a deforming bone of "{1}", so it is open what the bones '
-        "belong to. Bind the Source to its armature with weights first."
+        'No vertex of "{0}" is in a vertex group of a deforming bone of "{1}", so it is not known what the '
+        "bones belong to. Bind the Source to its armature with weights first."
     ): "“{0}”没有顶点在“{1}”的变形骨骼的顶点组中，无法确定骨骼的归属。请先用权重将源绑定到骨架。",
     'The armature "{0}" has a scale of zero. Set its scale first.': "骨架“{0}”的缩放为零。请先设置缩放。",
     'The armature "{0}" is in Edit Mode. Switch to Object Mode first.': "骨架“{0}”处于编辑模式。请先切换到物体模式。",

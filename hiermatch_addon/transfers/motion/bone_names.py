@@ -42,7 +42,7 @@ def names_by_table(armature: bpy.types.Object, known: str, wanted: str) -> dict[
     Raises
     ------
     HierMatchError
-        If it is open what the bones are.
+        If the bones cannot be identified.
     """
     bones = armature_of(armature).bones
     if known == "JOINTS":

@@ -101,7 +101,7 @@ class BonePairTransfer(Transfer):
         if not weights.nnz:
             raise ObjectError(
                 f'No vertex of "{source.name}" is in a vertex group of a deforming bone of "{rigs[0].name}", so '
-                "it is open what the bones belong to. Bind the Source to its armature with weights first."
+                "it is not known what the bones belong to. Bind the Source to its armature with weights first."
             )
         self._task = _Task(
             (rigs[0].name, rigs[1].name),

@@ -137,6 +137,6 @@ def ancestors(tree, bone):
 
 def test_an_animal_is_no_person():
     names, parents, heads, tails = creature_bones()
-    with pytest.raises(RigError, match="open what its bones are"):
+    with pytest.raises(RigError, match="its bones cannot be identified"):
         humanoid_bones(Skeleton(parents[:5], heads[:5], tails[:5]), np.ones(5, bool), UP)
     assert names
