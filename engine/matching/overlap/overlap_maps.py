@@ -19,7 +19,7 @@ from ...runtime.progress import Progress, Steps, within
 from .oriented_patches import OrientedPatches, oriented_patches
 from .overlap_score import shared_area
 from .overlap_search import PATCHES, CoarsePair, ScoredFit, overlap_fits_steps, scored_fit
-from .part_registration import FINE, REST, TURNED, Fit, Landmarks, placed, register_parts
+from .part_registration import FINE, REST, TURNED, Fit, Marks, placed, register_parts
 from .part_surface import PartSurface
 
 _COARSE = 800
@@ -66,7 +66,7 @@ class Overlap:
     members : pair of arrays of bool, (n,) and (n',)
         Which vertices have a partner.
     score : float
-        How credible the best way is, see `overlap_score`.
+        How credible the best way is, larger for more, see `overlap_score`.
     margin : float
         By how much the best other way is less credible.
     agreement : float
@@ -203,7 +203,7 @@ class _MutualFit(NamedTuple):
     fits : pair of Fit
         Of the first surface onto the second, and of the second onto the first.
     score : float
-        The mean of their scores.
+        The mean of their scores, larger for more credible.
     """
 
     fits: tuple[Fit, Fit]
@@ -268,7 +268,7 @@ def _turned_fit_steps(pair: CoarsePair, registered: tuple[Fit, int]) -> Steps[Sc
     if len(known) < _LEAST_MEMBERS:
         return None
     images = fit.back.images[known]
-    marks = Landmarks(known, coarse.vertices[images], other.mass[known])
+    marks = Marks(known, coarse.vertices[images], other.mass[known])
     positions, marks = placed(other, marks, fit.rotations[images].transpose(0, 2, 1), other.paths(known))
     return scored_fit(other, coarse, register_parts(other, coarse, positions, TURNED, marks=marks))
 

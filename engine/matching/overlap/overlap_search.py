@@ -15,7 +15,7 @@ from ...runtime.progress import Progress, Steps, within
 from .consistent_sets import PLANS, Together, consistent_sets
 from .oriented_patches import OrientedPatches
 from .overlap_score import overlap_score
-from .part_registration import FAST, REST, Fit, Landmarks, Round, placed, register_parts
+from .part_registration import FAST, REST, Fit, Marks, Round, placed, register_parts
 from .part_surface import PartSurface
 from .patch_candidates import compatibilities, patch_candidates
 
@@ -68,7 +68,7 @@ class CoarsePair:
 
 @dataclass(frozen=True, eq=False)
 class ScoredFit:
-    """A registration of coarse surfaces, and how credible it is, see `overlap_score`."""
+    """A registration of coarse surfaces, and how credible it is, larger for more, see `overlap_score`."""
 
     fit: Fit
     score: float
@@ -107,14 +107,14 @@ class _Start:
     ----------
     positions : (n, 3) array of float
         Where its vertices are.
-    marks : Landmarks
+    marks : Marks
         What says so.
     from_marks : (n,) array of float, optional
         Distances from these, if they are only in a piece of it.
     """
 
     positions: Floats
-    marks: Landmarks
+    marks: Marks
     from_marks: Floats | None
 
 
@@ -142,9 +142,7 @@ def _starts_steps(pair: CoarsePair) -> Steps[list[_Start]]:
         for each in consistent_sets(candidates, together, patches, shares, plan):
             first, second = candidates.first[each.members], candidates.second[each.members]
             paths = patches[0].paths[first][:, coarse.ids]
-            marks = Landmarks(
-                nearest[first], there.vertices[patches[1].vertices[second]], each.weights.astype(np.float64)
-            )
+            marks = Marks(nearest[first], there.vertices[patches[1].vertices[second]], each.weights.astype(np.float64))
             positions, marks = placed(coarse, marks, candidates.rotations[each.members], paths)
             starts.append(_Start(positions, marks, paths.min(axis=0) if np.isfinite(plan.radius) else None))
         yield Progress(0.5 + (number + 1) / (2 * len(PLANS)), _LABEL)
@@ -178,7 +176,7 @@ def _regrown(source: PartSurface, target: PartSurface, scored: ScoredFit) -> Sco
     bad = fit.there.gaps / _BAD_GAP + np.maximum(strain, 0) / _BAD_STRAIN
     good = np.flatnonzero(fit.members & (bad <= np.median(bad[fit.members])))
     paths = source.paths(good)
-    marks = Landmarks(good, target.vertices[fit.there.images[good]], source.mass[good])
+    marks = Marks(good, target.vertices[fit.there.images[good]], source.mass[good])
     positions, marks = placed(source, marks, fit.rotations[good], paths)
     from_marks = paths.min(axis=0) + _BEYOND
     return scored_fit(

@@ -100,7 +100,7 @@ _FOUND = Round(0, 0.06, 0.1, 0.05)
 
 
 @dataclass(frozen=True, eq=False)
-class Landmarks:
+class Marks:
     """Vertices (k,) that are to go to places (k, 3), and how much each counts, (k,)."""
 
     vertices: Ints
@@ -157,14 +157,14 @@ class Fit:
     members_back: Bools
 
 
-def placed(surface: PartSurface, marks: Landmarks, rotations: Floats, paths: Floats) -> tuple[Floats, Landmarks]:
+def placed(surface: PartSurface, marks: Marks, rotations: Floats, paths: Floats) -> tuple[Floats, Marks]:
     """Place a surface by landmarks, all else following as rigidly as it can.
 
     Parameters
     ----------
     surface : PartSurface
         The surface, n vertices.
-    marks : Landmarks
+    marks : Marks
         Vertices that are known to go somewhere.
     rotations : (k, 3, 3) array of float
         How each of these is turned.
@@ -175,7 +175,7 @@ def placed(surface: PartSurface, marks: Landmarks, rotations: Floats, paths: Flo
     -------
     positions : (n, 3) array of float
         Where the vertices are.
-    marks : Landmarks
+    marks : Marks
         The landmarks with weights that sum to one.
     """
     nearest = rotations[paths.argmin(axis=0)]
@@ -189,7 +189,7 @@ def placed(surface: PartSurface, marks: Landmarks, rotations: Floats, paths: Flo
     positions = factor.solve(elastic.pull(turned) + right)
     for _ in range(_PLACINGS):
         positions = factor.solve(elastic.pull(elastic.rotations(positions, _SPREAD_RADIUS)) + right)
-    return positions, Landmarks(marks.vertices, marks.places, weights)
+    return positions, Marks(marks.vertices, marks.places, weights)
 
 
 def register_parts(
@@ -198,7 +198,7 @@ def register_parts(
     start: Floats,
     rounds: tuple[Round, ...],
     *,
-    marks: Landmarks | None = None,
+    marks: Marks | None = None,
     from_marks: Floats | None = None,
     done: int = 0,
 ) -> Fit:
@@ -215,7 +215,7 @@ def register_parts(
         Positions of the source's vertices to begin with.
     rounds : tuple of Round
         How stiff the surface is, round after round.
-    marks : Landmarks, optional
+    marks : Marks, optional
         What holds the surface in the first rounds.
     from_marks : (n,) array of float, optional
         Distance of each vertex from these: what is far is matched in later rounds only, when it is in place.

@@ -26,7 +26,7 @@ _TORN_EDGES = 1 / 3
 """Part of its edges from which a vertex that is on no island is torn away as well."""
 
 
-def torn_vertices(weights: csr_array, surface_map: SurfaceMap, parts: WeldedParts, image: TriangleMesh) -> Bools:
+def torn_weights(weights: csr_array, surface_map: SurfaceMap, parts: WeldedParts, image: TriangleMesh) -> Bools:
     """Find vertices that a map takes to another place than the surface around them.
 
     Parameters

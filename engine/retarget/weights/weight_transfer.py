@@ -21,7 +21,7 @@ from .rigid_parts import with_rigid_parts, with_single_bones
 from .skin_weights import carried, limited, mixed, normalised, pruned, row_sums, with_rows
 from .soft_joints import with_soft_joints
 from .weight_filling import filled
-from .weight_rejection import torn_vertices
+from .weight_rejection import torn_weights
 
 _ROUNDING = 1e-9
 
@@ -141,7 +141,7 @@ def carry_weights_steps(
     if fill:
         yield Progress(0.2, "Looking for torn vertices")
         bones = result if telling is None else csr_array(result[:, telling])
-        torn = torn_vertices(bones, target_to_source, parts, source)
+        torn = torn_weights(bones, target_to_source, parts, source)
         yield Progress(0.5, "Filling in weights")
         result = filled(result, ~torn, parts)
         result = with_loose_parts(result, target_to_source.confidence, parts)

@@ -6,7 +6,7 @@ import pytest
 
 from engine import TriangleMesh
 from engine.matching.overlap.overlap_score import overlap_score, shared_area
-from engine.matching.overlap.part_registration import FINE, Landmarks, placed, register_parts
+from engine.matching.overlap.part_registration import FINE, Marks, placed, register_parts
 from engine.matching.overlap.part_surface import PartSurface
 from tests.shapes import compacted, creature, rotation
 
@@ -37,7 +37,7 @@ def test_landmarks_of_a_rigid_motion_place_all_of_a_surface(whole):
     turn = rotation([1.0, 2.0, 0.5], 1.3)
     places = surface.vertices @ turn.T + [1.0, 0.0, -2.0]
     some = np.arange(0, surface.count, 60)
-    marks = Landmarks(some, places[some], np.ones(len(some)))
+    marks = Marks(some, places[some], np.ones(len(some)))
     rotations = np.broadcast_to(turn, (len(some), 3, 3))
     positions, weighted = placed(surface, marks, rotations, surface.paths(some))
     np.testing.assert_allclose(positions, places, atol=1e-6)

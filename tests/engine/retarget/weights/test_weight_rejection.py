@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 from engine import SurfaceMap, TriangleMesh
 from engine.mesh.connectivity.welded_parts import WeldedParts
 from engine.retarget.weights.skin_weights import carried
-from engine.retarget.weights.weight_rejection import torn_vertices
+from engine.retarget.weights.weight_rejection import torn_weights
 from tests.shapes import creature
 from tests.skeletons import creature_weights
 
@@ -34,7 +34,7 @@ def broken(mesh, groups):
 def test_a_good_map_tears_nothing(body):
     mesh, weights = body
     parts = WeldedParts.of(mesh)
-    assert not torn_vertices(weights, SurfaceMap.identity(mesh), parts, mesh).any()
+    assert not torn_weights(weights, SurfaceMap.identity(mesh), parts, mesh).any()
 
 
 @pytest.mark.parametrize("size", [1, 2, 6])
@@ -43,7 +43,7 @@ def test_patches_that_lie_elsewhere_are_found(body, size):
     leg, tail, head = [0.46, 0.2, -0.8], [-1.2, 0.0, 0.15], [1.2, 0.0, 0.4]
     surface_map, astray = broken(mesh, [(size, (leg, tail)), (size, (tail, head))])
     parts = WeldedParts.of(mesh)
-    found = torn_vertices(carried(weights, surface_map), surface_map, parts, mesh)
+    found = torn_weights(carried(weights, surface_map), surface_map, parts, mesh)
     assert found[astray].all()
     assert found.sum() <= 2 * astray.sum()  # the tip of the tail is cut off, too
 
@@ -53,8 +53,8 @@ def test_scale_does_not_matter(body):
     surface_map, _ = broken(mesh, [(3, ([0.46, 0.2, -0.8], [-0.5, -0.2, -0.7]))])
     large = TriangleMesh(1000 * mesh.vertices, mesh.triangles)
     carried_weights = carried(weights, surface_map)
-    first = torn_vertices(carried_weights, surface_map, WeldedParts.of(mesh), mesh)
-    second = torn_vertices(carried_weights, surface_map, WeldedParts.of(large), mesh)
+    first = torn_weights(carried_weights, surface_map, WeldedParts.of(mesh), mesh)
+    second = torn_weights(carried_weights, surface_map, WeldedParts.of(large), mesh)
     assert first.sum() >= 3
     np.testing.assert_array_equal(first, second)
 
@@ -64,4 +64,4 @@ def test_a_map_that_only_stretches_is_good(body):
     surface_map, astray = broken(mesh, [(3, ([0.46, 0.2, -0.8], [-0.5, -0.2, -0.7]))])
     same = csr_array(np.ones((mesh.vertex_count, 1)))
     assert astray.any()
-    assert not torn_vertices(same, surface_map, WeldedParts.of(mesh), mesh).any()
+    assert not torn_weights(same, surface_map, WeldedParts.of(mesh), mesh).any()
