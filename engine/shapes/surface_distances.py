@@ -8,11 +8,12 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
+from scipy.spatial.distance import cdist
 
 from ..geometry.geodesics import GeodesicSolver
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints, squared_differences
+from ..runtime.arrays import Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Progress, Steps, within
@@ -239,12 +240,12 @@ class EmbeddedDistances:
 
     def squares_to_vertices(self, points: SurfacePoints, vertices: Ints) -> Floats:
         """Squared distances from points (k,) to vertices (v,): (k, v)."""
-        return squared_differences(points.interpolate(self._coordinates), self._coordinates[vertices])
+        return cdist(points.interpolate(self._coordinates), self._coordinates[vertices], "sqeuclidean")
 
     def squares_between(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,): (k, k)."""
         places = points.interpolate(self._coordinates)
-        return squared_differences(places, places)
+        return cdist(places, places, "sqeuclidean")
 
     def squared_sides(self, triangles: Ints) -> Floats:
         """Squared lengths of the sides 01, 02, 12 of triangles (q,): (q, 3)."""

@@ -7,7 +7,7 @@ from scipy.spatial.distance import cdist
 
 from engine import HierMatchError, TriangleMesh
 from engine.geometry.eigenpairs import Spectrum, eigenpairs
-from engine.hierarchical.diffusion import automatic_time, diffusion_places
+from engine.hierarchical.diffusion import automatic_time, diffusion_places, positive_values
 from tests.shapes import creature, icosphere, permuted, plane, rotation
 
 
@@ -34,7 +34,7 @@ def distances(spectrum, sources, time):
 
 def heat_kernel(spectrum, time, sources):
     places = diffusion_places(spectrum, time / 2)
-    return places[sources] @ places.T
+    return 1 + places[sources] @ places.T
 
 
 def test_it_is_the_sum_of_the_paper(spectrum):
@@ -67,6 +67,17 @@ def test_heat_is_neither_lost_nor_found(spectrum):
     heat = heat_kernel(spectrum, 0.01, np.arange(40)) @ spectrum.mass / spectrum.area
     np.testing.assert_allclose(heat, 1, rtol=1e-9)
     np.testing.assert_allclose(heat_kernel(spectrum, 50.0, [0, 7]), 1, rtol=1e-6)
+
+
+def test_after_a_long_time_it_is_the_sum_of_the_slowest_functions(sphere):
+    """Those of a sphere are its coordinates: what remains of the distances are straight lines, however short."""
+    mesh, spectrum = sphere
+    straight = cdist(mesh.vertices[[0, 30]], mesh.vertices)
+    least = positive_values(spectrum)[0]
+    for time in (1.0, 10.0):
+        places = diffusion_places(spectrum, time, least)
+        found = cdist(places[[0, 30]], places)
+        np.testing.assert_allclose(found / found.max(), straight / straight.max(), atol=0.02)
 
 
 def test_it_is_a_metric(spectrum):
@@ -111,3 +122,5 @@ def test_the_automatic_time(spectrum):
 def test_constant_functions_do_not_suffice():
     with pytest.raises(HierMatchError, match="not constant"):
         automatic_time(eigenpairs(TriangleMesh(*plane(5)), 1))
+    with pytest.raises(HierMatchError, match="not constant"):
+        diffusion_places(eigenpairs(TriangleMesh(*plane(5)), 1), 0.1)
