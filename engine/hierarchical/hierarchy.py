@@ -97,7 +97,7 @@ def _converge(
         yield here
         proposal = descend(problem, proposal)
         proposed = problem.cost(proposal)
-        if proposed >= cost - 1e-9 * (1 + cost):
+        if proposed >= cost - 1e-9 * abs(cost):
             return assignment, iteration + 1
         assignment, cost = proposal, proposed
     return assignment, _MAX_ITERATIONS

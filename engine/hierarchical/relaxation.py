@@ -16,6 +16,9 @@ from .problem import MatchingProblem
 _SWEEPS = 50
 """Bound on the sweeps over all points of a descent; in practice a dozen are enough."""
 
+_NOISE = 1e-9
+"""Part of what the cost of a point is made of by which it falls if it falls at all: rounding is far less."""
+
 
 @dataclass(frozen=True, eq=False)
 class RelaxedMatching:
@@ -88,6 +91,8 @@ class RelaxedMatching:
             The mixture; rows are not negative and sum to one.
         """
         shape = self.candidates.shape
+        uniform, _ = self.value_and_gradient(np.full(shape, 1 / shape[1]))
+        scale = 1 / uniform if uniform > 0 else 1.0  # so that it ends at the same place whatever the weights' size
 
         def softmax(logits: Floats) -> Floats:
             """Turn each row into a mixture: not negative, summing to one."""
@@ -99,7 +104,7 @@ class RelaxedMatching:
             mixture = softmax(flat.reshape(shape))
             value, gradient = self.value_and_gradient(mixture)
             gradient -= (gradient * mixture).sum(axis=1, keepdims=True)
-            return value, (mixture * gradient).ravel()
+            return scale * value, scale * (mixture * gradient).ravel()
 
         # The mixture is projected to integers next; more digits were not seen to give better matchings.
         ends = {"maxiter": max_iterations, "ftol": 1e-5, "gtol": 0.0}
@@ -156,6 +161,7 @@ def descend(problem: MatchingProblem, assignment: Ints) -> Ints:
     to_matched = target[:, current]  # (m, j): distance from each candidate to the present match of each point
     squares = np.square(to_matched).sum(axis=1)
     free = ~marked(current, len(target))
+    noise = _NOISE * (np.abs(linear[np.isfinite(linear)]).max() + problem.quadratic_weight * squares.max())
     for _ in range(_SWEEPS):
         moved = False
         for i in range(len(current)):
@@ -166,7 +172,7 @@ def descend(problem: MatchingProblem, assignment: Ints) -> Ints:
             here = cost[current[i]]
             cost[~free] = np.inf
             best = int(cost.argmin())
-            if cost[best] < here - 1e-9 * (1 + abs(here)):
+            if cost[best] < here - noise:
                 squares += np.square(target[:, best]) - np.square(to_matched[:, i])
                 free[[current[i], best]] = True, False
                 current[i] = best

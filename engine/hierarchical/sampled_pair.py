@@ -13,14 +13,21 @@ from ..runtime.arrays import TINY, Bools, Floats, Ints, squared_differences
 from ..shapes.shape import Shape
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 from .descriptors import bin_difference, distance_histograms, earth_movers_distance
-from .diffusion import automatic_time, diffusion_places
+from .diffusion import automatic_time, diffusion_places, positive_values
 from .problem import MatchingProblem
 from .settings import MatchSettings
 from .sign_sequences import SignSequence, consistent_sequences
-from .spectral_descriptors import eigenfunction_descriptor, heat_kernel_signatures, multiplets, wave_kernel_signatures
+from .spectral_descriptors import (
+    automatic_energies,
+    eigenfunction_descriptor,
+    heat_kernel_signatures,
+    multiplets,
+    wave_kernel_signatures,
+)
 
-# Weight of the orientation term beside the descriptors.  Its mean square difference of signed areas is about 0.5
-# between unrelated places, the descriptors' earth mover's distance some hundredths.
+# Weight of the orientation term beside those of descriptors and of distances, the larger of which is one usually.  Its
+# mean square difference of signed areas is about 0.5 between unrelated places, the descriptors' earth mover's distance
+# some hundredths.
 _ORIENTATION_WEIGHT = 0.1
 
 # Mean of the linear term between all samples, to which descriptors without a unit of length are scaled: what the earth
@@ -73,15 +80,24 @@ class Pair:
     def _sign_free(self, descriptor: str) -> Floats:
         """Compare the samples by a descriptor; in place of eigenfunctions, by histograms, which need no signs."""
         if descriptor in ("heat_kernel", "wave_kernel"):
-            make = heat_kernel_signatures if descriptor == "heat_kernel" else wave_kernel_signatures
-            signatures = (make(shape.spectrum)[shape.samples.vertices] for shape in (self.source, self.target))
-            return _scaled(_signature_difference(*signatures))
+            return _scaled(_signature_difference(*self._signatures(descriptor)))
         bins, reach = self.settings.histogram_bins, max(self.source_distances.max(), self.target_distances.max())
         first = distance_histograms(self.source_distances, self.source.samples.cell_areas, bins, reach)
         second = distance_histograms(self.target_distances, self.target.samples.cell_areas, bins, reach)
         if self.settings.comparison == "bin_to_bin":
             return _scaled(bin_difference(first, second))
         return earth_movers_distance(first, second, reach / bins)
+
+    def _signatures(self, descriptor: str) -> list[Floats]:
+        """Kernel signatures of the samples of both shapes, (S, d) and (T, d)."""
+        spectra = self.source.spectrum, self.target.spectrum
+        if descriptor == "heat_kernel":
+            signatures = [heat_kernel_signatures(spectrum) for spectrum in spectra]
+        else:  # at the same energies, whichever has fewer eigenpairs
+            energies = automatic_energies(min(map(len, spectra)))
+            signatures = [wave_kernel_signatures(spectrum, energies) for spectrum in spectra]
+        shapes = self.source, self.target
+        return [of[shape.samples.vertices] for of, shape in zip(signatures, shapes, strict=True)]
 
     def variants(self, count: int) -> list[Pair]:
         """Return the pair, or for eigenfunctions the pair with each of the most consistent sign sequences.
@@ -97,10 +113,17 @@ class Pair:
         source, target = (
             eigenfunction_descriptor(s.spectrum, k)[s.samples.vertices] for s in (self.source, self.target)
         )
-        first = self.source.spectrum.zero_count
-        groups = [group.tolist() for group in multiplets(self.source.spectrum.values[first : first + k], _NEAR)]
-        sequences = consistent_sequences(source, target, self._descriptor, groups, count)
+        sequences = consistent_sequences(source, target, self._descriptor, self._groups(k), count)
         return [self._with(source, target, sequence) for sequence in sequences]
+
+    def _groups(self, count: int) -> list[list[int]]:
+        """Group eigenfunctions of which some may have changed places, as eigenvalues of either shape are near."""
+        begin = [
+            {int(group[0]) for group in multiplets(spectrum.values[spectrum.zero_count :][:count], _NEAR)}
+            for spectrum in (self.source.spectrum, self.target.spectrum)
+        ]
+        parts = np.split(np.arange(count), sorted(begin[0] & begin[1])[1:])
+        return [part.tolist() for part in parts]
 
     def _with(self, source: Floats, target: Floats, sequence: SignSequence) -> Pair:
         variant = copy.copy(self)
@@ -142,7 +165,8 @@ class Pair:
         """
         first = signed_areas(self.source.samples.directions[:, : len(coarse)])
         second = sign * signed_areas(self.target.samples.directions[:, coarse])
-        return _ORIENTATION_WEIGHT * squared_differences(first, second) / first.shape[1]
+        weight = _ORIENTATION_WEIGHT * max(self.settings.linear_weight, self.settings.quadratic_weight)
+        return weight * squared_differences(first, second) / first.shape[1]
 
     def orientation(self, assignment: Ints) -> float:
         """Mean agreement of orientation at the matched points, see `orientation_agreement`."""
@@ -161,7 +185,8 @@ def _metric(source: Shape, target: Shape, settings: MatchSettings) -> tuple[Floa
         return source.samples.distances, target.samples.distances, SurfaceDistances(target)
     # One time, and one scale, for both shapes.
     time = settings.diffusion_time or (automatic_time(source.spectrum) + automatic_time(target.spectrum)) / 2
-    places = [diffusion_places(shape.spectrum, time) for shape in (source, target)]
+    least = min(float(positive_values(shape.spectrum)[0]) for shape in (source, target))
+    places = [diffusion_places(shape.spectrum, time, least) for shape in (source, target)]
     sampled = (own[shape.samples.vertices] for own, shape in zip(places, (source, target), strict=True))
     first, second = (cdist(own, own) for own in sampled)
     scale = _TYPICAL_DISTANCE / np.sqrt((np.square(first).mean() + np.square(second).mean()) / 2)

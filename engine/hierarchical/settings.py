@@ -94,7 +94,7 @@ class MatchSettings(CheckedSettings):
             "flat": ("Flat", "All points at once, exactly: for comparison, and for some 30 points at most"),
             "gmds": (
                 "Generalized Multidimensional Scaling",
-                "From the exact coarse match, points move over the target by their distances alone: for comparison",
+                "From the coarse match, points move over the target by their distances alone: for comparison",
             ),
         },
     )

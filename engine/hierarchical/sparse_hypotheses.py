@@ -10,15 +10,14 @@ can speak.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import TypeVar
 
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
 from ..runtime.arrays import TINY, Floats, Ints
-from ..runtime.progress import Progress, Steps, in_turn, within
-from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps
+from ..runtime.progress import Progress, Steps, within
+from .exact.branch_and_bound import BoundedMatching, distinct_matchings_steps, matchings_of_each_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from .sampled_pair import Pair
@@ -112,19 +111,18 @@ def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
     Returns
     -------
     list of Coarse
-        The best matchings that are distinct from each other; with eigenfunctions as descriptors, the best matching
-        for each of the most consistent sign sequences.
+        The best matchings that are distinct from each other; with eigenfunctions as descriptors, those of the most
+        consistent sign sequences in turn.
     """
     settings = pair.settings
     points = min(settings.coarse_points, settings.points)
     candidates = coarse_candidates(pair)
     count = -(-settings.hypotheses // _DENSE_SHARE) if settings.dense else settings.hypotheses
     variants = pair.variants(count)
-    each = -(-count // len(variants))
-    search = partial(distinct_matchings_steps, count=each, radius=_DISTINCT, node_limit=settings.node_limit)
-    found = yield from in_turn(search(variant.problem(points, candidates)) for variant in variants)
-    pairs = zip(variants, found, strict=True)
-    return [Coarse(variant, matching) for variant, matchings in pairs for matching in matchings]
+    problems = [variant.problem(points, candidates) for variant in variants]
+    turns = [number % len(variants) for number in range(count)]
+    found = yield from matchings_of_each_steps([problems[turn] for turn in turns], _DISTINCT, settings.node_limit)
+    return [Coarse(variants[turn], matching) for turn, matching in zip(turns, found, strict=False)]
 
 
 def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:

@@ -68,8 +68,7 @@ def branch_and_bound_steps(
         The problem, of at most 5000 pairs of a point and a candidate.
     node_limit : int
         Number of nodes after which to stop with the best matching so far and a lower bound.  It is a number of nodes
-        and not of seconds, so that the same input always has the same output.  It counts from the first feasible
-        matching on; only several exclusions at once can make that one hard to find.
+        and not of seconds, so that the same input always has the same output.
     exclusions : sequence of Exclusion
         Matchings to keep away from.
     initial : sequence of (n,) array of int
@@ -83,7 +82,8 @@ def branch_and_bound_steps(
     Returns
     -------
     BoundedMatching or None
-        The best matching; None if no matching keeps to the exclusions.
+        The best matching; None if no matching keeps to the exclusions, or none was found in so many nodes, as several
+        exclusions at once can make hard.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def branch_and_bound_steps(
     if n * m > _LARGEST:
         raise MatchError(
             f"{n} points and {m} candidates are too many for an exact search ({n * m} pairs, at most {_LARGEST}): "
-            "use fewer coarse points or candidates."
+            "use fewer points or candidates."
         )
     feasible = _feasible_matchings(problem, exclusions)
     if feasible is None:
@@ -132,6 +132,27 @@ def distinct_matchings_steps(
         The problem.
     count : int
         How many matchings to find.
+    radius, node_limit
+        As in `matchings_of_each_steps`.
+
+    Returns
+    -------
+    list of BoundedMatching
+        At most `count`, the best one first: each is the best that is distinct from all before it, and its lower bound
+        is among those.
+    """
+    return matchings_of_each_steps([problem] * count, radius, node_limit)
+
+
+def matchings_of_each_steps(
+    problems: Sequence[MatchingProblem], radius: float = 0.2, node_limit: int = 1_000_000
+) -> Steps[list[BoundedMatching]]:
+    """Find the best matching of each of some problems that is no variation of one before.
+
+    Parameters
+    ----------
+    problems : sequence of MatchingProblem
+        Problems that differ in what single matches cost.
     radius : float
         Two matchings are distinct if at least half of the points, rounded up, lie farther than this from each other,
         in the units of the distances.
@@ -146,8 +167,7 @@ def distinct_matchings_steps(
     Returns
     -------
     list of BoundedMatching
-        At most `count`, the best one first: each is the best that is distinct from all before it, and its lower bound
-        is among those.
+        One for each problem; up to the first of which all matchings are variations of those before.
 
     Raises
     ------
@@ -156,9 +176,9 @@ def distinct_matchings_steps(
     """
     found: list[BoundedMatching] = []
     exclusions: list[Exclusion] = []
-    for i in range(count):
+    for number, problem in enumerate(problems):
         search = branch_and_bound_steps(problem, node_limit=node_limit, exclusions=exclusions)
-        matching = yield from within(search, *part_of(i, count))
+        matching = yield from within(search, *part_of(number, len(problems)))
         if matching is None:
             break
         found.append(matching)
@@ -228,8 +248,7 @@ class _Search:
 
     @property
     def _exhausted(self) -> bool:
-        # Without a matching there is nothing to return: the limit holds from the first one on.
-        return self.nodes >= self.node_limit and self.incumbent.assignment is not None
+        return self.nodes >= self.node_limit
 
     def _progress(self) -> Progress:
         return Progress(self.nodes / (self.nodes + 0.1 * self.node_limit), f"Exact search, {self.nodes} nodes")

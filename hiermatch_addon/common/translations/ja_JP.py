@@ -119,8 +119,8 @@ MESSAGES: Final[dict[str, str]] = {
         "すべてのポイントを一度に厳密にマッチングします。比較用で、ポイントは30程度までです"
     ),
     "Generalized Multidimensional Scaling": "一般化多次元尺度構成法",
-    "From the exact coarse match, points move over the target by their distances alone: for comparison": (
-        "厳密な粗いマッチングから始め、距離だけに従ってポイントをターゲット上で動かします。比較用です"
+    "From the coarse match, points move over the target by their distances alone: for comparison": (
+        "粗いマッチングから始め、距離だけに従ってポイントをターゲット上で動かします。比較用です"
     ),
     "Dense Map": "密なマップ",
     (

@@ -91,8 +91,8 @@ MESSAGES: Final[dict[str, str]] = {
         "一次性精确匹配所有点：用于比较，最多约 30 个点"
     ),
     "Generalized Multidimensional Scaling": "广义多维尺度分析",
-    "From the exact coarse match, points move over the target by their distances alone: for comparison": (
-        "从精确的粗匹配出发，各点仅依据距离在目标上移动：用于比较"
+    "From the coarse match, points move over the target by their distances alone: for comparison": (
+        "从粗匹配出发，各点仅依据距离在目标上移动：用于比较"
     ),
     "Dense Map": "稠密映射",
     (

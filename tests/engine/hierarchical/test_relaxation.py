@@ -57,6 +57,18 @@ def test_an_integer_mixture_costs_what_its_assignment_costs():
     assert value == pytest.approx(problem.cost(assignment))
 
 
+@pytest.mark.parametrize("scale", [1e-6, 1e3])
+def test_the_size_of_the_weights_does_not_matter(scale):
+    problem, candidates = random_problem(8), random_candidates(8)
+    scaled = MatchingProblem(
+        scale * problem.linear, problem.source_distances, problem.target_distances, scale * problem.quadratic_weight
+    )
+    mixture = RelaxedMatching(problem, candidates).solve()
+    np.testing.assert_allclose(RelaxedMatching(scaled, candidates).solve(), mixture, atol=1e-6)
+    start = np.argsort(candidates[:, 0]) % 9
+    np.testing.assert_array_equal(descend(scaled, start), descend(problem, start))
+
+
 def test_solution_is_a_stationary_point_better_than_the_uniform_mixture():
     relaxed = RelaxedMatching(random_problem(8), random_candidates(8))
     mixture = relaxed.solve(500)

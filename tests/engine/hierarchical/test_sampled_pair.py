@@ -7,7 +7,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from engine import MatchSettings, Shape, TriangleMesh
+from engine import MatchSettings, Shape, SurfacePoints, TriangleMesh
 from engine.hierarchical.sampled_pair import Pair
 from engine.runtime.progress import run
 from tests.shapes import creature
@@ -57,6 +57,25 @@ def test_exchanging_the_shapes_transposes(name, shapes):
 def test_the_weight_of_the_descriptors_is_a_factor(shapes):
     once, thrice = (Pair(*shapes, replace(PLAIN, linear_weight=weight)) for weight in (1.0, 3.0))
     np.testing.assert_allclose(thrice.linear, 3 * once.linear)
+
+
+def test_shapes_with_other_numbers_of_eigenpairs_are_compared_at_the_same_energies(shapes):
+    other = Shape(shapes[0].original)
+    run(other.sample_steps(SAMPLES))
+    run(other.spectrum_steps(70))
+    pair = Pair(shapes[0], other, replace(PLAIN, descriptor="wave_kernel"))
+    assert (pair.linear.argmin(axis=1) == np.arange(SAMPLES)).mean() > 0.9
+
+
+def test_after_a_long_time_diffusion_distances_are_still_those_of_the_shape(shapes):
+    pair = Pair(shapes[0], shapes[0], replace(PLAIN, metric="diffusion", diffusion_time=10.0))
+    spectrum, vertices = shapes[0].spectrum, shapes[0].samples.vertices
+    slowest = spectrum.functions[vertices, spectrum.zero_count]
+    exact = np.abs(slowest[:, None] - slowest)
+    assert np.corrcoef(pair.source_distances.ravel(), exact.ravel())[0, 1] > 0.99
+    points = SurfacePoints.at_vertices(shapes[0].mesh, vertices)
+    measured = np.sqrt(pair.target_metric.squares_between(points))
+    np.testing.assert_allclose(measured, pair.target_distances, atol=1e-9)
 
 
 def test_diffusion_distances_have_a_root_mean_square_of_one(shapes):
@@ -127,6 +146,14 @@ def test_the_orientation_term_is_nothing_where_directions_turn_the_same_way(shap
         assert np.diag(kept).max() < 1e-9
         assert np.diag(mirrored).min() > 0.01
         assert (kept >= 0).all()
+
+
+def test_the_orientation_counts_as_much_beside_small_weights(shapes):
+    coarse = np.arange(8)
+    small = Pair(*shapes, replace(PLAIN, linear_weight=0.01, quadratic_weight=0.02))
+    np.testing.assert_allclose(
+        small.orientation_term(coarse, 1), 0.02 * Pair(*shapes, PLAIN).orientation_term(coarse, 1)
+    )
 
 
 def test_only_eigenfunctions_have_signs_to_choose(shapes):

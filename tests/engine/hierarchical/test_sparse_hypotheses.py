@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 from dataclasses import replace
+from itertools import combinations
 
+import numpy as np
 import pytest
 
 from engine import MatchSettings, Shape, TriangleMesh
@@ -26,6 +28,25 @@ def test_half_as_many_coarse_matchings_are_followed_where_a_dense_map_decides(sh
     assert len(few) == 3
     for first, second in zip(many, few, strict=False):
         assert first.matching.cost == pytest.approx(second.matching.cost)
+
+
+def test_coarse_matchings_by_eigenfunctions_are_distinct_too(shapes):
+    for shape in shapes:
+        run(shape.spectrum_steps(30))
+    coarse = run(coarse_steps(Pair(*shapes, replace(SPARSE, descriptor="eigenfunctions"))))
+    assert len(coarse) == SPARSE.hypotheses
+    for first, second in combinations([each.matching.assignment for each in coarse], 2):
+        moved = shapes[1].samples.distances[first, second] > 0.2
+        assert moved.sum() >= 4
+
+
+def test_only_the_ratio_of_the_weights_matters(shapes):
+    usual, small = (
+        run(choose_steps(run(coarse_steps(Pair(*shapes, replace(SPARSE, linear_weight=w, quadratic_weight=w))))))
+        for w in (1.0, 1e-3)
+    )
+    for first, second in zip(usual, small, strict=True):
+        np.testing.assert_array_equal(first.assignment, second.assignment)
 
 
 @pytest.mark.parametrize("followed", [1, 3])

@@ -295,7 +295,7 @@ def test_measures_do_not_depend_on_order_motion_or_scale():
 
 def test_measures_need_the_meshes_of_the_map(fine, coarse):
     mapped = onto(fine, coarse)
-    with pytest.raises(MatchError, match="measured on"):
+    with pytest.raises(MatchError, match="should lead from"):
         mapped.edge_stretch(coarse, coarse)
     with pytest.raises(MatchError, match="given as its image"):
         mapped.orientation(fine, fine)

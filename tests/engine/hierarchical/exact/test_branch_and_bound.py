@@ -117,6 +117,17 @@ def test_the_tree_alone_finds_the_optimum(monkeypatch, dive):
 
 
 @pytest.mark.usefixtures("bad_start")
+def test_the_limit_of_nodes_holds_before_there_is_a_matching():
+    problem = random_problem(3, 8, 12)
+    start = linear_sum_assignment(-problem.linear)[1]
+    away = [Exclusion(np.arange(12) != start[:, None], 8)]
+    assert branch_and_bound(problem, exclusions=away, node_limit=1) is None
+    found = branch_and_bound(problem, exclusions=away)
+    assert found.proven
+    assert (found.assignment != start).all()
+
+
+@pytest.mark.usefixtures("bad_start")
 def test_the_tree_alone_finds_the_optimum_of_a_larger_problem():
     problem = shape_problem(1, 20, 20, noise=0.15)
     start = branch_and_bound(problem, node_limit=1)
