@@ -129,6 +129,11 @@ def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None: 
     row.operator("hiermatch.clear_bone_pairs", text="", icon="TRASH")
     row.separator()
     row.operator_menu_enum("hiermatch.rename_bones", "names", text="Rename Bones", icon="SORTALPHA")
+    button = draw_starter(
+        layout, context, "hiermatch.transfer_paired_weights", "Weights to Own Rig", "MOD_VERTEX_WEIGHT"
+    )
+    if button is not None:
+        button.refine = options.refine
 
 
 def _rigs_picked(context: bpy.types.Context) -> list[set[Any] | None]:

@@ -1205,6 +1205,7 @@ MESSAGES: Final[dict[str, str]] = {
         "ソースのウェイトを、ボーンのペアを通じて、ターゲットがすでに持つボーンに移します。ボーンが多いところでは"
         "分配し、少ないところでは合計します"
     ),
+    "Pair the bones first": "先にボーンをペアにしてください",
     "Limit Bones": "ボーン数を制限",
     "How many bones may move a vertex at most; 0 for any number": "一つの頂点を動かせるボーンの最大数。0なら無制限",
     "Motion": "モーション",

@@ -999,6 +999,7 @@ MESSAGES: Final[dict[str, str]] = {
     "they are shared out where it has more bones, and added up where it has fewer": (
         "通过骨骼配对将源的权重传递到目标已有的骨骼：骨骼较多处分配，较少处相加"
     ),
+    "Pair the bones first": "请先配对骨骼",
     "Limit Bones": "限制骨骼数",
     "How many bones may move a vertex at most; 0 for any number": "每个顶点最多受多少骨骼带动；0 表示不限",
     "Motion": "运动",

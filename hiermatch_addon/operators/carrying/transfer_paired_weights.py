@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import bpy
 
+from ...common.translated_text import translated
+from ...properties.bone_pairs import bone_pairs_of
 from ...transfers.motion.paired_weights import PairedWeightTransfer
 from .transfer_operator import TransferOperator
 
@@ -31,6 +33,18 @@ class HIERMATCH_OT_transfer_paired_weights(TransferOperator, bpy.types.Operator)
     limit: bpy.props.IntProperty(
         name="Limit Bones", description="How many bones may move a vertex at most; 0 for any number", min=0, default=4
     )
+
+    panel = "HIERMATCH_PT_motion"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Allow it as all that carries something, once bones are paired."""
+        if not super().poll(context):
+            return False
+        if not len(bone_pairs_of(cast("bpy.types.Scene", context.scene))):
+            cls.poll_message_set(translated("Pair the bones first"))
+            return False
+        return True
 
     def _transfers(self) -> list[Transfer]:
         return [PairedWeightTransfer(self.limit)]

@@ -44,7 +44,13 @@ class Layout:
         assert name in owner.bl_rna.properties, name
         self.drawn.append(("prop", name))
 
-    def operator_menu_enum(self, name, prop, *, text):
+    def prop_search(self, owner, name, *_arguments, **_names):
+        self.prop(owner, name)
+
+    def separator(self):
+        pass
+
+    def operator_menu_enum(self, name, prop, *, text, **_names):
         group, operator = name.split(".")
         assert prop in getattr(getattr(bpy.ops, group), operator).get_rna_type().properties
         self.drawn.append(("menu", name, text))

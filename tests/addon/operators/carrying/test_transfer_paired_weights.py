@@ -92,3 +92,11 @@ def test_without_pairs_it_is_refused():
     with pytest.raises(HierMatchError, match="Pair their bones first"):
         carry()
     assert weights_of(bpy.data.objects["B Body"]) == before
+
+
+@pytest.mark.usefixtures("made")
+def test_the_button_waits_for_pairs_and_says_so():
+    assert bpy.ops.hiermatch.transfer_paired_weights.poll()
+    bpy.context.scene.hiermatch_bone_pairs.clear()
+    with pytest.raises(RuntimeError, match="Pair the bones first"):
+        bpy.ops.hiermatch.transfer_paired_weights(source="A", target="B")
