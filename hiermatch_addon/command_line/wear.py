@@ -35,8 +35,9 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         "wear",
         help="fit clothes, hair and accessories of one body to another",
         description="Match the source with the target if they carry no match yet, and fit what the source wears: the "
-        "objects that are named, or those of a collection, or else all that its armature moves. Of a source that is an "
-        "armature or a collection, what is not an item is the body. How each fits is kept on it.",
+        "objects that are named, or those of a collection, or else, if the source is one mesh, all others that its "
+        "armature moves. Of a source that is an armature or a collection, what is not an item is the body. How each "
+        "fits is kept on it.",
         usage="%(prog)s SOURCE TARGET --output FILE [--items NAME,NAME,... | --collection NAME] [options]",
         epilog=EXIT_CODES,
     )

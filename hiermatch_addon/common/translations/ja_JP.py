@@ -530,11 +530,11 @@ MESSAGES: Final[dict[str, str]] = {
     "Pick Landmarks": "ランドマークを指定",
     "Guide Me": "案内に従う",
     (
-        "Click on nose, hands and feet of both meshes as you are asked for them; S leaves one out. After the "
-        "last one, or Enter, the two are matched again with these landmarks"
+        "Click on nose, hands, feet and tail of both meshes as you are asked for them; S leaves one out. After "
+        "the last one, or Enter, the two are matched again with these landmarks"
     ): (
-        "求められた順に、両方のメッシュの鼻、手、足をクリックします。Sで飛ばせます。最後まで進むかEnterを押す"
-        "と、これらのランドマークでもう一度マッチングします"
+        "求められた順に、両方のメッシュの鼻、手、足、尾をクリックします。Sで飛ばせます。最後まで進むかEnterを"
+        "押すと、これらのランドマークでもう一度マッチングします"
     ),
     "Nose": "鼻",
     "Left Hand": "左手",
@@ -1550,20 +1550,23 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
         "プキーやボーンを移してから、もう一度合わせてください。"
     ),
+    "Mend in Poses": "ポーズで補正",
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (
         "相手のボディのリグの各関節を曲げてみて、肌がアイテムを突き抜けるところでは、ウェイトを肌の"
         "ものに近づけ、アイテムを少し浮かせます"
     ),
     "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
-    "Without named items it takes the selected ones, or else all that the source's armature moves": (
+    "Without named items it takes the selected ones, or else, if the source is one mesh, all others that its "
+    "armature moves": (
         "ソースの服・髪・アクセサリー（それぞれ独立したオブジェクト）を、マッチングしたボディに合わせます。アイテ"
-        "ムの指定がなければ選択中のもの、それもなければソースのアーマチュアが動かすすべてのものを使います"
+        "ムの指定がなければ選択中のもの、それもなく、ソースが一つのメッシュなら、そのアーマチュアが動かすほかのすべて"
+        "のものを使います"
     ),
-    "Names of the objects to fit; if empty, those in the collection, or else the selected ones, or else all "
-    "that the source's armature moves": (
-        "合わせるオブジェクトの名前。空の場合はコレクション内のもの、なければ選択中のもの、それもなければソースの"
-        "アーマチュアが動かすすべてのもの"
+    "Names of the objects to fit; if empty, those in the collection, or else the selected ones, or else, if the "
+    "source is one mesh, all others that its armature moves": (
+        "合わせるオブジェクトの名前。空の場合はコレクション内のもの、なければ選択中のもの、それもなく、ソースが"
+        "一つのメッシュなら、そのアーマチュアが動かすほかのすべてのもの"
     ),
     "Their own, if the other body's rig has these bones, or else those of its skin": (
         "相手のボディのリグに同じボーンがあれば自身のウェイト、なければ肌のウェイト"

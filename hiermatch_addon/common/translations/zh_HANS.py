@@ -445,9 +445,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Pick Landmarks": "拾取地标",
     "Guide Me": "引导我",
     (
-        "Click on nose, hands and feet of both meshes as you are asked for them; S leaves one out. After the "
-        "last one, or Enter, the two are matched again with these landmarks"
-    ): "按提示依次点击两个网格的鼻子、手和脚；按 S 可跳过。完成最后一个或按 Enter 后，用这些地标重新匹配",
+        "Click on nose, hands, feet and tail of both meshes as you are asked for them; S leaves one out. After "
+        "the last one, or Enter, the two are matched again with these landmarks"
+    ): "按提示依次点击两个网格的鼻子、手、脚和尾巴；按 S 可跳过。完成最后一个或按 Enter 后，用这些地标重新匹配",
     "Nose": "鼻子",
     "Left Hand": "左手",
     "Right Hand": "右手",
@@ -1274,18 +1274,21 @@ MESSAGES: Final[dict[str, str]] = {
     "Retarget, and fit it again.": (
         '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
     ),
+    "Mend in Poses": "在姿势中修正",
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (
         "弯曲另一身体绑定的每个关节，若皮肤此时穿出物品，则使该处的权重更接近皮肤的权重，并将物品略微抬起"
     ),
     "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
-    "Without named items it takes the selected ones, or else all that the source's armature moves": (
-        "将源的服装、头发和配饰（各自为独立的物体）适配到匹配的身体上。未指定物品时使用所选物体，否则使用源的骨架"
-        "所带动的全部物体"
+    "Without named items it takes the selected ones, or else, if the source is one mesh, all others that its "
+    "armature moves": (
+        "将源的服装、头发和配饰（各自为独立的物体）适配到匹配的身体上。未指定物品时使用所选物体；若未选择且源为单个"
+        "网格，则使用其骨架所带动的其他全部物体"
     ),
-    "Names of the objects to fit; if empty, those in the collection, or else the selected ones, or else all "
-    "that the source's armature moves": (
-        "要适配的物体名称；为空时使用集合中的物体，否则使用所选物体，再否则使用源的骨架所带动的全部物体"
+    "Names of the objects to fit; if empty, those in the collection, or else the selected ones, or else, if the "
+    "source is one mesh, all others that its armature moves": (
+        "要适配的物体名称；为空时使用集合中的物体，否则使用所选物体；若未选择且源为单个网格，则使用其骨架所带动的"
+        "其他全部物体"
     ),
     "Their own, if the other body's rig has these bones, or else those of its skin": (
         "若另一身体的绑定有这些骨骼则用自身的权重，否则用其皮肤的权重"

@@ -30,14 +30,15 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
     bl_label = "Wear"
     bl_description = (
         "Fit clothes, hair and accessories of the source, which are objects of their own, to the matched bodies. "
-        "Without named items it takes the selected ones, or else all that the source's armature moves"
+        "Without named items it takes the selected ones, or else, if the source is one mesh, all others that its "
+        "armature moves"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     items: bpy.props.CollectionProperty(
         name="Items",
-        description="Names of the objects to fit; if empty, those in the collection, or else the selected "
-        "ones, or else all that the source's armature moves",
+        description="Names of the objects to fit; if empty, those in the collection, or else the selected ones, or "
+        "else, if the source is one mesh, all others that its armature moves",
         type=bpy.types.OperatorFileListElement,
         options={"HIDDEN", "SKIP_SAVE"},
     )

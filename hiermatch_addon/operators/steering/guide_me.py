@@ -113,12 +113,12 @@ class Guide(LandmarkClicks):
 
 
 class HIERMATCH_OT_guide_me(Guide, bpy.types.Operator):
-    """Click on nose, hands and feet of both meshes in turn, and match again."""
+    """Click on nose, hands, feet and tail of both meshes in turn, and match again."""
 
     bl_idname = "hiermatch.guide_me"
     bl_label = "Guide Me"
     bl_description = (
-        "Click on nose, hands and feet of both meshes as you are asked for them; S leaves one out. After the last one, "
-        "or Enter, the two are matched again with these landmarks"
+        "Click on nose, hands, feet and tail of both meshes as you are asked for them; S leaves one out. After the "
+        "last one, or Enter, the two are matched again with these landmarks"
     )
     bl_options = {"REGISTER"}  # each pair is a step of its own to undo

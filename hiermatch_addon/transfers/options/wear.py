@@ -124,7 +124,7 @@ class WearOptions:
             default=True,
         ),
         "wear_poses": _props.BoolProperty(
-            name="Test Poses",
+            name="Mend in Poses",
             description="Bend each joint of the other body's rig, and where its skin pokes through an item then, bring "
             "the weights there closer to those of the skin, and lift the item a little",
             default=True,
