@@ -12,7 +12,7 @@ from ...common.file_writing import check_place
 from ..command import EXIT_CODES, ExitCode, UsageError
 from ..console import Console, interruptible
 from ..meshes import mesh_argument
-from ..options import add_options, given_options, option_names
+from ..options import add_options, given_options, option_names, quoted_names
 from ..reports import file_state
 from .ledger import Ledger, counts, summary_rows
 from .manifest import COMMANDS, read_manifest, take_shard
@@ -74,15 +74,18 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
     )
     group.add_argument("--least-confidence", type=float, metavar="X", help="Below it a dense match is doubtful.")
     group.add_argument("--quiet", action="store_true", help="Tell no progress, only errors.")
-    add_options(parser, "retarget", title="options for all pairs that are retargeted, unless their row says otherwise")
-    skipped = set(option_names("match")) & set(option_names("retarget"))
-    add_options(parser, "match", without=skipped, title="options for all pairs, unless their row says otherwise")
+    known: set[str] = set()
+    for command, (operator, *_) in COMMANDS.items():
+        title = f"options of {command}, for all pairs unless their row says otherwise"
+        add_options(parser, operator, without=known, title=title)
+        known.update(option_names(operator))
     parser.set_defaults(run=_run)
 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Run what is not done yet, and write the summary."""
-    defaults = {name: str(value) for of in ("retarget", "match") for name, value in given_options(of, parsed).items()}
+    given = [item for operator, *_ in COMMANDS.values() for item in given_options(operator, parsed).items()]
+    defaults = {name: quoted_names(value) if isinstance(value, tuple) else str(value) for name, value in given}
     pairs = read_manifest(parsed.manifest, defaults, parsed.do)
     folder = parsed.work or parsed.manifest.with_name(f"{parsed.manifest.name}.hiermatch")
     ledger, shard = Ledger(folder.absolute()), parsed.shard

@@ -277,6 +277,32 @@ def test_other_commands_have_rows_of_their_own(tmp_path, command, options, value
     assert parsed.points == 32
 
 
+@pytest.mark.parametrize(
+    ("command", "options"),
+    [
+        ("motion", ["--keep-feet", "--actions=ALL"]),
+        ("my-rig", ["--my-rig-bind", "--rig=metarig"]),
+        ("wear", ['--items="Shirt, red",Hat', "--wear-hide=MASK"]),
+        ("retarget", ["--weight-limit=4", "--no-refine"]),
+    ],
+)
+def test_options_of_any_command_are_given_for_all_its_pairs(stand_in, monkeypatch, command, options):
+    begun = []
+
+    def run_tasks(tasks, *_):
+        begun.extend(tasks)
+        yield from ()
+
+    monkeypatch.setattr(batch, "run_tasks", run_tasks)
+    row = "{0}.obj,target.obj,out/{0}.blend,"
+    stand_in.write(["a"], "source,target,output,command", f"{row}{command}\n{row.replace('out/', 'out/matched_')}match")
+    stand_in.run(*options, "--points=32")
+    own, matched = (task.arguments for task in begun)
+    assert {*options, "--points=32"} <= set(own)
+    assert "--points=32" in matched
+    assert not {*options} & set(matched)
+
+
 def test_json_has_options_for_all(tmp_path):
     path = tmp_path / "pairs.json"
     pairs = [{"source": "a.obj", "target": "b.obj", "map": "m.npz"}]
