@@ -125,11 +125,12 @@ def lowest_eigenpairs_steps(matrix: csr_array, null: Floats, count: int, guess: 
     n = matrix.shape[0]
     wanted = max(count, _LEAST)
     if n <= max(_DENSE, 4 * wanted):
-        # All of them, by divide and conquer: LAPACK's search for some fails at regular grids, and takes longer.
-        values, vectors = (found[..., :count] for found in np.linalg.eigh(matrix.toarray()))
-        vectors[:, 0] = null
-        vectors[:, 1:] -= np.outer(null, null @ vectors[:, 1:])
-        return EigenPairs(np.append(0, values[1:].clip(0)), vectors, complete=True)
+        # All of them, by divide and conquer: LAPACK's search for some fails at regular grids, and takes longer.  The
+        # known eigenvector is moved to the upper end, or others of next to no eigenvalue would be mixed with it.
+        largest = abs(matrix).sum(axis=1).max()
+        values, vectors = np.linalg.eigh(matrix.toarray() + 2 * largest * np.outer(null, null))
+        vectors = np.column_stack([null, vectors[:, : count - 1]])
+        return EigenPairs(np.append(0, values[: count - 1].clip(0)), vectors, complete=True)
     order: Ints | None = None
     yield Progress(0.02, _LABEL)
     block = 8 if wanted < 150 else 16

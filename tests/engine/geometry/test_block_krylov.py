@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from scipy.sparse import csr_array, diags_array, kron
+from scipy.sparse import block_diag, csr_array, diags_array, kron
 
 from engine.geometry import block_krylov
 from engine.geometry.block_krylov import lowest_eigenpairs_steps
@@ -61,6 +61,20 @@ def test_a_path_is_no_surface():
     matrix = path(3000)
     exact = 2 - 2 * np.cos(np.pi * np.arange(3000) / 3000)
     check(lowest(matrix, 50, 0.1), matrix, exact, 50)
+
+
+@pytest.mark.parametrize("n", [60, 400])
+def test_halves_that_hardly_hang_together_have_orthonormal_eigenvectors(n):
+    # To the last digit the eigenvalue zero is there twice: 60 rows are solved as a dense matrix, 400 are not.
+    matrix = block_diag([path(n // 2), path(n // 2)]).tolil()
+    one, other = n // 2 - 1, n // 2
+    matrix[one, other] = matrix[other, one] = -1e-16
+    exact = np.repeat(2 - 2 * np.cos(np.pi * np.arange(5) / (n // 2)), 2)
+    pairs = lowest(csr_array(matrix), 10, exact[-1])
+    assert pairs.complete
+    np.testing.assert_allclose(pairs.vectors[:, 0], n**-0.5)
+    np.testing.assert_allclose(pairs.values, exact, rtol=1e-6, atol=1e-12)
+    np.testing.assert_allclose(pairs.vectors.T @ pairs.vectors, np.eye(10), atol=1e-10)
 
 
 def with_multiplicities(sizes, n=1500, seed=0):
