@@ -12,7 +12,7 @@ from ..geometry.orientation import orientation_agreement, signed_areas
 from ..runtime.arrays import TINY, Bools, Floats, Ints, squared_differences
 from ..shapes.shape import Shape
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
-from .descriptors import bin_difference, distance_histograms, earth_movers_distance
+from .descriptors import distance_histograms, earth_movers_distance
 from .diffusion import automatic_time, diffusion_places, positive_values
 from .problem import MatchingProblem
 from .settings import MatchSettings
@@ -85,7 +85,7 @@ class Pair:
         first = distance_histograms(self.source_distances, self.source.samples.cell_areas, bins, reach)
         second = distance_histograms(self.target_distances, self.target.samples.cell_areas, bins, reach)
         if self.settings.comparison == "bin_to_bin":
-            return _scaled(bin_difference(first, second))
+            return _scaled(cdist(first, second, "cityblock"))
         return earth_movers_distance(first, second, reach / bins)
 
     def _signatures(self, descriptor: str) -> list[Floats]:
@@ -201,4 +201,4 @@ def _scaled(difference: Floats) -> Floats:
 
 def _signature_difference(first: Floats, second: Floats) -> Floats:
     """Compare kernel signatures (s, d) and (t, d) by their logarithms, because they span decades: (s, t)."""
-    return bin_difference(*(np.log(np.maximum(signature, TINY)) for signature in (first, second)))
+    return cdist(*(np.log(np.maximum(signature, TINY)) for signature in (first, second)), "cityblock")
