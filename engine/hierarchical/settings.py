@@ -209,7 +209,7 @@ class MatchSettings(CheckedSettings):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.coarse_candidates < self.coarse_points:
+        if self.solver != "flat" and self.coarse_candidates < self.coarse_points:  # flat has no coarse points
             raise SettingsError(
                 f"{self.coarse_points} Coarse Points need at least as many Coarse Candidates, "
                 f"not {self.coarse_candidates}."
