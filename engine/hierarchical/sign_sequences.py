@@ -82,20 +82,20 @@ def consistent_sequences(
     voters = np.arange(0, len(source), max(1, len(source) // _PLACES))
     size = min(_CLUSTER, difference.shape[1])
     cluster = np.argpartition(difference[voters], size - 1, axis=1)[:, :size]  # (v, c)
-    sequences = []
-    for order in _orders(k, groups):
-        # |a - s b|^2 = |a|^2 + |b|^2 - 2 sum_i s_i a_i b_i: for all signs at once, one product.
-        mine, theirs = source[voters], target[:, order][cluster]  # (v, k), (v, c, k)
-        squares = np.square(mine).sum(axis=1)[:, None] + np.square(theirs).sum(axis=2)
-        signs = np.array(list(product((1, -1), repeat=k)))  # (2^k, k)
-        overlap = np.einsum("vk,vck,sk->vcs", mine, theirs, signs, optimize=True)
-        distance = np.sqrt(np.maximum(squares[:, :, None] - 2 * overlap, 0))
-        disagreement = distance.min(axis=1).mean(axis=0)
-        sequences += [
-            SignSequence(np.array(order), sign, float(value)) for sign, value in zip(signs, disagreement, strict=True)
-        ]
-    sequences.sort(key=lambda sequence: sequence.disagreement)
-    return sequences[:count]
+    mine = source[voters]  # (v, k)
+    signs = np.array(list(product((1, -1), repeat=k)))  # (2^k, k)
+    orders = np.array(_orders(k, groups))  # (o, k)
+    disagreements = np.array([_disagreements(mine, target[:, order][cluster], signs) for order in orders])  # (o, 2^k)
+    best = np.unravel_index(np.argsort(disagreements, axis=None, kind="stable")[:count], disagreements.shape)
+    return [SignSequence(orders[i], signs[j], float(disagreements[i, j])) for i, j in zip(*best, strict=True)]
+
+
+def _disagreements(mine: Floats, theirs: Floats, signs: Ints) -> Floats:
+    """Compare points (v, k) to their clusters (v, c, k), with each of some signs (s, k): (s,)."""
+    # |a - s b|^2 = |a|^2 + |b|^2 - 2 sum_i s_i a_i b_i: for all signs at once, one product.
+    squares = np.tensordot(-2 * mine[:, None] * theirs, signs, (2, 1))  # (v, c, s)
+    squares += (np.square(mine).sum(axis=1)[:, None] + np.square(theirs).sum(axis=2))[:, :, None]
+    return np.asarray(np.sqrt(squares.min(axis=1).clip(0)).mean(axis=0))
 
 
 def _orders(k: int, groups: Sequence[Sequence[int]]) -> list[list[int]]:

@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -41,3 +43,14 @@ def test_no_more_than_asked_for_in_order():
     values = [sequence.disagreement for sequence in found]
     assert len(found) == 10
     assert values == sorted(values)
+
+
+def test_only_what_is_asked_for_is_kept_of_a_hundred_thousand_sequences():
+    rng = np.random.default_rng(0)
+    source, target, likeness = rng.random((20, 9)), rng.random((25, 9)), rng.random((20, 25))
+    tracemalloc.start()
+    found = consistent_sequences(source, target, likeness, [[0, 1, 2], [3, 4, 5], [6, 7, 8]], 5)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(found) == 5
+    assert peak < 8e6  # bytes; objects for all of the sequences would take more than 20 MB
