@@ -14,9 +14,10 @@ from ..runtime.arrays import Floats, Ints
 from ..runtime.progress import Steps, in_turn, within
 from ..shapes.landmarks import placed_at_vertices
 from ..shapes.surface_distances import symmetric_roots
-from .compared.flat import flat_candidates, flat_steps
+from .compared.flat import flat_candidates
 from .compared.gmds import gmds_steps
 from .compared.stress_descent import Stress, settle_steps
+from .exact.branch_and_bound import distinct_matchings_steps
 from .hierarchy import Refined, level_sizes, refine_steps
 from .sampled_pair import Pair
 from .sparse_hypotheses import Coarse, Hypothesis, assess, choose_steps, coarse_candidates, coarse_steps, two_answers
@@ -112,8 +113,8 @@ def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
     settings = pair.settings
     candidates = flat_candidates(settings.points, len(pair.target.samples))
     variants = pair.variants(2)
-    search = partial(flat_steps, points=settings.points, candidates=candidates, count=2, node_limit=settings.node_limit)
-    found = yield from in_turn(search(variant) for variant in variants)
+    search = partial(distinct_matchings_steps, node_limit=settings.node_limit)
+    found = yield from in_turn(search(variant.problem(settings.points, candidates)) for variant in variants)
     hypotheses = [
         assess(Coarse(variant, matching), [Refined(matching.assignment, 0)])
         for variant, matchings in zip(variants, found, strict=True)

@@ -21,7 +21,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from engine import MatchSettings, Shape, match, run
-from engine.hierarchical.compared.flat import flat_candidates, flat_steps
+from engine.hierarchical.compared.flat import flat_candidates
+from engine.hierarchical.exact.branch_and_bound import branch_and_bound_steps
 from engine.hierarchical.sampled_pair import Pair
 from tests.benchmarks.common import creature_pairs, data_pairs
 
@@ -49,13 +50,12 @@ def flat(pair, precomputation, points, limit):
     """Match by the flat method, to the end or to the limit."""
     start = time.perf_counter()
     candidates = flat_candidates(points, SAMPLES)
-    steps = flat_steps(pair, points, candidates, node_limit=10**12)
+    steps = branch_and_bound_steps(pair.problem(points, candidates), node_limit=10**12)
     while True:
         try:
             next(steps)
         except StopIteration as stop:
-            (found,) = stop.value
-            seconds = time.perf_counter() - start
+            found, seconds = stop.value, time.perf_counter() - start
             return Run("flat", points, candidates, seconds, precomputation, found.proven, found.cost)
         if time.perf_counter() - start > limit:
             steps.close()

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, run
-from engine.hierarchical.compared.flat import flat_candidates, flat_steps
+from engine.hierarchical.compared.flat import flat_candidates
+from engine.hierarchical.exact.branch_and_bound import distinct_matchings_steps
 from engine.hierarchical.sampled_pair import Pair
 from tests.shapes import creature
 
@@ -21,8 +22,14 @@ def pair():
     return Pair(*shapes, MatchSettings())
 
 
+def flat(pair, points, candidates=None, count=1, **options):
+    """Match points to as many candidates as flat matching offers, if it is not said to how many."""
+    candidates = candidates or flat_candidates(points, len(pair.target.samples))
+    return run(distinct_matchings_steps(pair.problem(points, candidates), count, **options))
+
+
 def test_it_is_the_best_of_all_assignments(pair):
-    (found,) = run(flat_steps(pair, 4, 8, node_limit=10**6))
+    (found,) = flat(pair, 4, 8, node_limit=10**6)
     problem = pair.problem(4, 8)
     costs = [problem.cost(np.array(assignment)) for assignment in permutations(range(8), 4)]
     assert found.proven
@@ -31,19 +38,19 @@ def test_it_is_the_best_of_all_assignments(pair):
 
 
 def test_all_points_are_matched_at_once_to_twice_as_many(pair):
-    (found,) = run(flat_steps(pair, 12, node_limit=10**6))
+    (found,) = flat(pair, 12, node_limit=10**6)
     assert found.proven
     assert len(set(found.assignment.tolist())) == 12
     assert found.assignment.max() < 24
-    (alike,) = run(flat_steps(pair, 12, 24, node_limit=10**6))
+    (alike,) = flat(pair, 12, 24, node_limit=10**6)
     np.testing.assert_array_equal(alike.assignment, found.assignment)
 
 
 def test_stopped_early_it_bounds_the_optimum(pair):
     hard = copy.copy(pair)
     hard.linear = np.zeros_like(pair.linear)  # distances alone: the root cannot prove it
-    (full,) = run(flat_steps(hard, 14, node_limit=10**6))
-    (stopped,) = run(flat_steps(hard, 14, node_limit=1))
+    (full,) = flat(hard, 14, node_limit=10**6)
+    (stopped,) = flat(hard, 14, node_limit=1)
     assert full.proven
     assert full.nodes > 1
     assert stopped.nodes < full.nodes
@@ -52,7 +59,7 @@ def test_stopped_early_it_bounds_the_optimum(pair):
 
 
 def test_distinct_matchings_lie_apart(pair):
-    first, second = run(flat_steps(pair, 8, count=2, radius=0.3, node_limit=10**6))
+    first, second = flat(pair, 8, count=2, radius=0.3, node_limit=10**6)
     assert first.cost <= second.cost
     apart = pair.target_distances[first.assignment, second.assignment] > 0.3
     assert apart.sum() >= 4
@@ -68,6 +75,6 @@ def test_as_many_candidates_are_offered_as_an_exact_search_takes():
 
 def test_too_many_points_are_refused(pair):
     with pytest.raises(MatchError, match="too many"):
-        run(flat_steps(pair, 80, node_limit=10))
+        flat(pair, 80, node_limit=10)
     with pytest.raises(MatchError, match="fewer points"):
-        run(flat_steps(pair, 20, 10, node_limit=10))
+        flat(pair, 20, 10, node_limit=10)
