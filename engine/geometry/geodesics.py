@@ -398,8 +398,3 @@ def _unfolded(squares: Floats, geometry: Floats) -> Floats:
     around *= around
     depth[where] = around
     return depth
-
-
-def geodesic_distances(mesh: TriangleMesh, sources: ArrayLike) -> Floats:
-    """Compute the geodesic distances (S, n) from vertices (S,) to all vertices of a mesh; see `GeodesicSolver`."""
-    return GeodesicSolver(mesh).distances(sources)

@@ -3,14 +3,14 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh
-from engine.geometry.geodesics import geodesic_distances
+from engine.geometry.geodesics import GeodesicSolver
 from engine.geometry.mean_curvature import smoothed_mean_curvature
 from tests.shapes import cylinder, icosphere, plane
 
 
 def curvature(vertices, triangles, places, radius):
     mesh = TriangleMesh(vertices, triangles)
-    return smoothed_mean_curvature(mesh, geodesic_distances(mesh, places), radius)
+    return smoothed_mean_curvature(mesh, GeodesicSolver(mesh).distances(places), radius)
 
 
 def test_a_sphere_bulges_alike_everywhere_and_its_inside_is_hollow():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from engine import MeshError, TriangleMesh
-from engine.geometry.geodesics import geodesic_distances
+from engine.geometry.geodesics import GeodesicSolver
 from engine.geometry.voronoi_labels import NO_REGION, nearest_regions
 from tests.shapes import icosphere
 
@@ -29,7 +29,7 @@ def test_each_vertex_belongs_to_the_nearest_point():
     places = np.random.default_rng(1).choice(mesh.vertex_count, 12, replace=False)
     regions = nearest_regions(mesh, places)
     assert regions[places].tolist() == list(range(12))
-    distances = geodesic_distances(mesh, places)
+    distances = GeodesicSolver(mesh).distances(places)
     own = distances[regions, np.arange(mesh.vertex_count)]
     assert (own <= 1.3 * distances.min(axis=0) + 1e-9).all()
 
