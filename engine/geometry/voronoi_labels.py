@@ -9,7 +9,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Ints
-from .geodesics import GeodesicSolver, checked_sources
+from .corner_tables import corner_tables
+from .geodesics import checked_sources
 
 NO_REGION = -1
 """The region of a vertex that no point has a path to."""
@@ -43,7 +44,7 @@ def nearest_regions(mesh: TriangleMesh, vertices: ArrayLike) -> Ints:
     if not len(places):
         return regions
     distinct, first = np.unique(places, return_index=True)
-    graph = GeodesicSolver(mesh).graph
+    graph = corner_tables(mesh).graph
     _, _, sources = dijkstra(graph, directed=False, indices=distinct, min_only=True, return_predecessors=True)
     number = np.full(mesh.vertex_count, NO_REGION)
     number[distinct] = first
