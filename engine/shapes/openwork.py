@@ -64,7 +64,7 @@ def filled_openwork(mesh: TriangleMesh, spacing: float, hole: float) -> Triangle
     """
     for wider in _WIDER:
         filled = _closed(mesh, spacing, wider * hole)
-        if filled.triangle_count and enclosed_volumes(filled)[1].sum() >= _ROUND * filled.area**1.5:
+        if enclosed_volumes(filled)[1].sum() >= _ROUND * filled.area**1.5:
             return filled
     return mesh
 
