@@ -18,6 +18,9 @@ from ..runtime.progress import Progress, Steps
 _ROOTS = 256
 """Most vertices of the first loops that shorter ones are looked for at."""
 
+_LAST_ROOTS = 12
+"""The same of the shortest of those."""
+
 _CREASE = 0.05
 """What a unit of length counts for in a crease: around where two parts touch the surface is hollow, around a wrist it
 bulges.  With 0.2 forearms that lie on the back are cut off, as half of what goes around them is a crease (``python -m
@@ -25,9 +28,6 @@ tests.benchmarks.fused_bodies``)."""
 
 _SADDLE = 0.1
 """By how much the angles around a vertex exceed a full turn, in radians, for a narrow place to count as a crease."""
-
-_LAST_ROOTS = 12
-"""The same of the shortest of those."""
 
 
 def genus(mesh: TriangleMesh) -> int:

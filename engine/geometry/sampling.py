@@ -32,8 +32,6 @@ class FarthestPointSampler:
         The samples so far, in the order in which they were taken.
     distances : (n,) array of float
         Distance of every vertex to its nearest sample.
-    nearest : (n,) array of int
-        Number (in `samples`) of that sample: the sample's Voronoi cell.
 
     Notes
     -----
