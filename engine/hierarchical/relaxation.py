@@ -25,9 +25,10 @@ class RelaxedMatching:
     r"""Match each of j points to a mixture of its own K candidates.
 
     Minimises :math:`\sum f_{ia} C_{ia} + \lambda \sum (d_X(i, k) - d_Y(a, b))^2 C_{ia} C_{kb}` over row-stochastic C,
-    with the linear term f of the problem: equation 6 of the paper without the demand for integers.  The (jK) x (jK)
-    interaction is never built: with the square expanded, and rows of C that sum to one, what is left is a product of
-    d_X with C d_Y, where C is sparse over the distinct candidates of all points.
+    with the linear term f of the problem: equation 6 of the paper without the demand for integers, and without that for
+    columns of C, equation 5, so that several points may share a candidate.  The (jK) x (jK) interaction is never built:
+    with the square expanded, and rows of C that sum to one, what is left is a product of d_X with C d_Y, where C is
+    sparse over the distinct candidates of all points.
 
     Parameters
     ----------
