@@ -2400,6 +2400,9 @@ MESSAGES: Final[dict[str, str]] = {
     'The armature "{0}" has a scale of zero. Set its scale first.': (
         "アーマチュア「{0}」のスケールが0です。先にスケールを設定してください。"
     ),
+    'The armature "{0}" is mirrored by its scale. Apply that first (Object > Apply > Scale).': (
+        "アーマチュア「{0}」はスケールで鏡像になっています。先に適用してください（オブジェクト > 適用 > スケール）。"
+    ),
     'The armature "{0}" is in Edit Mode. Switch to Object Mode first.': (
         "アーマチュア「{0}」は編集モードです。先にオブジェクトモードに切り替えてください。"
     ),

@@ -1954,6 +1954,9 @@ MESSAGES: Final[dict[str, str]] = {
         "bones belong to. Bind the Source to its armature with weights first."
     ): "“{0}”没有顶点在“{1}”的变形骨骼的顶点组中，无法确定骨骼的归属。请先用权重将源绑定到骨架。",
     'The armature "{0}" has a scale of zero. Set its scale first.': "骨架“{0}”的缩放为零。请先设置缩放。",
+    'The armature "{0}" is mirrored by its scale. Apply that first (Object > Apply > Scale).': (
+        "骨架“{0}”因缩放而被镜像。请先应用缩放（物体 > 应用 > 缩放）。"
+    ),
     'The armature "{0}" is in Edit Mode. Switch to Object Mode first.': "骨架“{0}”处于编辑模式。请先切换到物体模式。",
     '"{0}" has no vertex groups, so there are no weights to carry over. Choose a weighted mesh as the Source.': (
         "“{0}”没有顶点组，因此没有可传递的权重。请选择带权重的网格作为源。"

@@ -97,5 +97,20 @@ def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mappin
             for name in _STRIP:
                 setattr(new, name, getattr(strip, name))
             new.frame_start, new.frame_end = strip.frame_start, strip.frame_end
+            _copy_influence(strip, new)
         for name in _TRACK:
             setattr(copy, name, getattr(track, name))
+
+
+def _copy_influence(strip: Any, new: Any) -> None:  # noqa: ANN401 - strips, whose curves the stubs do not know
+    """Let a strip count as much in each frame as another one does, if that is animated."""
+    curve = strip.fcurves.find("influence") if strip.use_animated_influence else None
+    if curve is None:
+        return
+    new.use_animated_influence = True
+    copy = new.fcurves.find("influence")
+    for key in curve.keyframe_points:
+        copy.keyframe_points.insert(*key.co)
+    for made, key in zip(copy.keyframe_points, curve.keyframe_points, strict=True):
+        for name in ("interpolation", "handle_left_type", "handle_right_type", "handle_left", "handle_right"):
+            setattr(made, name, getattr(key, name))

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 import numpy as np
 
+from ..armatures import armature_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -74,7 +76,11 @@ def own_scene(armature: bpy.types.Object) -> Iterator[OwnScene]:
     """
     shown = cast("bpy.types.Scene", bpy.context.scene)
     scene, copy = bpy.data.scenes.new("HierMatch"), armature.copy()
+    bones = armature_of(armature)
+    posed = bones if bones.pose_position == "POSE" else bones.copy()  # else it would be at rest there, too
     try:
+        if posed is not bones:
+            posed.pose_position, copy.data = "POSE", posed
         scene.frame_current, scene.frame_subframe = shown.frame_current, shown.frame_subframe
         animation: Any = copy.animation_data or copy.animation_data_create()
         animation.use_tweak_mode = animation.use_nla = False
@@ -84,4 +90,6 @@ def own_scene(armature: bpy.types.Object) -> Iterator[OwnScene]:
         yield OwnScene(copy, scene)
     finally:
         bpy.data.objects.remove(copy)
+        if posed is not bones:
+            bpy.data.armatures.remove(posed)
         bpy.data.scenes.remove(scene)

@@ -68,6 +68,10 @@ def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
     matrix = np.array(armature.matrix_world, np.float64)[:3, :3]
     if abs(np.linalg.det(matrix)) <= np.finfo(float).tiny:
         raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
+    if np.linalg.det(matrix) < 0:
+        raise ObjectError(
+            f'The armature "{armature.name}" is mirrored by its scale. Apply that first (Object > Apply > Scale).'
+        )
     if written and armature.library is not None:
         raise ObjectError(
             f'The armature "{armature.name}" is linked from another file and cannot be animated here. Make a library '

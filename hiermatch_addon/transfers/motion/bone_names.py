@@ -14,6 +14,7 @@ from ...common.phrases import listed
 from ...properties.bone_pairs import bone_pairs_of, rows_of
 from ...scene.armatures import armature_of, read_skeleton
 from ...scene.motion.action_curves import actions_of, renamed_paths
+from ...scene.shape_key_io import keys_of
 from .name_tables import NAME_TABLES
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ def rename_bones(scene: bpy.types.Scene, armature: bpy.types.Object, names: Mapp
     changed = {old: new for old, new in names.items() if old != new and old in bones}
     _check_free(armature, changed)
     paths = [wanted for action in actions_of(armature) for wanted in renamed_paths(action, armature, changed)]
+    places = _group_names(armature, changed)
     rows = [
         (row, {side: changed.get(getattr(row, side), getattr(row, side)) for side in sides})
         for row in bone_pairs_of(scene)
@@ -118,6 +120,8 @@ def rename_bones(scene: bpy.types.Scene, armature: bpy.types.Object, names: Mapp
             curve.data_path = path
         if group is not None and group.name != group_name:
             group.name = group_name
+    for place, name, new in places:
+        setattr(place, name, new)
     for row, sides in rows:
         seen = row.is_seen
         for side, name in sides.items():
@@ -140,12 +144,32 @@ def _check_free(armature: bpy.types.Object, changed: Mapping[str, str]) -> None:
         raise ObjectError(
             f'"{armature.name}" has other bones that are called {listed(taken)} already. Rename them first.'
         )
-    for obj in (obj for obj in bpy.data.objects if obj.type == "MESH" and armature.data in _armatures_of(obj)):
+    for obj in _moved_by(armature):
         groups = [new for new in changed.values() if new in obj.vertex_groups and new not in bones]
         if groups:
             raise ObjectError(
                 f'"{obj.name}" has other vertex groups that are called {listed(groups)} already. Rename them first.'
             )
+
+
+def _group_names(armature: bpy.types.Object, changed: Mapping[str, str]) -> list[tuple[Any, str, str]]:
+    """List where modifiers and shape keys name vertex groups that will have other names: owner, property, new name."""
+    owners: list[Any] = []
+    for obj in _moved_by(armature):
+        keys = keys_of(obj)
+        owners += [*obj.modifiers, *(keys.key_blocks if keys is not None else ())]
+    found = []
+    for owner in owners:
+        for name in (one.identifier for one in owner.bl_rna.properties if "vertex_group" in one.identifier):
+            value = getattr(owner, name)
+            if isinstance(value, str) and value in changed and not owner.is_property_readonly(name):
+                found.append((owner, name, changed[value]))
+    return found
+
+
+def _moved_by(armature: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return the mesh objects whose vertex groups may follow the bones of an armature."""
+    return [obj for obj in bpy.data.objects if obj.type == "MESH" and armature.data in _armatures_of(obj)]
 
 
 def _armatures_of(obj: bpy.types.Object) -> list[bpy.types.ID | None]:

@@ -71,8 +71,12 @@ def test_vertex_groups_actions_and_pairs_follow(monkeypatch):
     armature.animation_data.action = first
     bpy.context.scene.frame_set(11)
     before.append(posed_vertices(armature))
-    weights = weights_of(bpy.data.objects["B Body"])["forearm.L"]
+    body = bpy.data.objects["B Body"]
+    weights = weights_of(body)["forearm.L"]
+    mask, body.shape_key_add(name="Basis").vertex_group = body.modifiers.new("Mask", "MASK"), "forearm.L"
+    mask.vertex_group, mask.show_viewport = "forearm.L", False
     assert rename(target="B", names="UNREAL") == {"FINISHED"}
+    assert mask.vertex_group == body.data.shape_keys.key_blocks[0].vertex_group == "lowerarm_l"
     assert weights_of(bpy.data.objects["B Body"])["lowerarm_l"] == weights
     for action, wanted in zip((other, first), before, strict=True):
         armature.animation_data.action = action

@@ -79,7 +79,9 @@ def test_bones_that_are_moved_on_what_they_hang_on_are_moved_so(capfd, constrain
     assert said in capfd.readouterr().out
 
 
-def test_what_constraints_do_to_the_source_is_carried_too():
+@pytest.mark.parametrize("position", ["POSE", "REST"])
+def test_what_constraints_do_to_the_source_is_carried_too(position):
+    """Whether the source is shown at rest or not."""
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")
     add_action(source)
@@ -87,7 +89,12 @@ def test_what_constraints_do_to_the_source_is_carried_too():
     constraint.use_limit_x, constraint.min_x, constraint.max_x = True, 0.5, 0.5
     constraint.owner_space = "LOCAL"
     bpy.context.scene.frame_set(7)
+    source.data.pose_position = position
+    armatures = set(bpy.data.armatures)
     carry(source="A", target="B", keying="ALL")
+    assert source.data.pose_position == position
+    assert set(bpy.data.armatures) == armatures
+    source.data.pose_position = "POSE"
     assert bpy.context.scene.frame_current == 7
     assert source.animation_data.action.name == "Wave"
     assert worst(source, target, (1, 6, 21)) < 2e-3
@@ -190,6 +197,23 @@ def test_strips_that_meet_between_two_frames_are_copied():
     assert [(one.frame_start, one.frame_end) for one in track.strips] == [
         (one.frame_start, one.frame_end) for one in strips
     ]
+
+
+def test_strips_whose_influence_is_animated_are_copied_with_that():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    strip = source.animation_data.nla_tracks.new().strips.new("Wave", 1, action)
+    strip.use_animated_influence = True
+    for frame, influence in ((1, 0.25), (8, 1.0), (15, 0.5)):
+        strip.influence = influence
+        strip.keyframe_insert("influence", frame=frame)
+    assert carry(source="A", target="B", action="Wave", strips=True) == {"FINISHED"}
+    (copy,) = target.animation_data.nla_tracks[0].strips
+    curves = [one.fcurves.find("influence") for one in (strip, copy)]
+    for frame in np.linspace(0, 20, 41):
+        assert curves[1].evaluate(frame) == pytest.approx(curves[0].evaluate(frame), abs=1e-5)
+    assert curves[0].evaluate(8) == 1
 
 
 def test_a_rig_that_is_named_twice_gets_an_action_once():

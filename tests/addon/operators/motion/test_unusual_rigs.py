@@ -26,8 +26,10 @@ carry, pose = bpy.ops.hiermatch.retarget_action, bpy.ops.hiermatch.retarget_pose
             lambda source, _target: source.data.transform(Matrix.Scale(0, 4)) or source.__setattr__("scale", (0, 0, 0)),
             "scale of zero",
         ),
+        (lambda source, _target: source.__setattr__("scale", (-1, 1, 1)), '"A" is mirrored by its scale'),
+        (lambda _source, target: target.__setattr__("scale", (1, -1, 1)), '"B" is mirrored by its scale'),
     ],
-    ids=["missing", "locked", "gone", "flat"],
+    ids=["missing", "locked", "gone", "flat", "mirrored source", "mirrored target"],
 )
 def test_what_cannot_be_done_is_told_and_changes_nothing(spoil, said):
     source, _ = add_person("A")
