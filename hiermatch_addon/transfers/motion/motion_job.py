@@ -123,10 +123,11 @@ class MotionJob(SteppedJob):
         if waiting:
             self._pairing, made = pairing_job(context, source, [target for target, _ in waiting], options)
             self._pairs = {uid: one for (_, uid), one in zip(waiting, made, strict=True)}
-        self._found: dict[tuple[str, str], list[BoneKeys]] = {}
-        self._poses: dict[str, TransferredMotion] = {}
-        self._steered: dict[str, SteeredRig] = {}
-        self._fixed: dict[str, list[str]] = {}
+        # By numbers of rigs, which may be renamed meanwhile.
+        self._found: dict[tuple[int, str], list[BoneKeys]] = {}
+        self._poses: dict[int, TransferredMotion] = {}
+        self._steered: dict[int, SteeredRig] = {}
+        self._fixed: dict[int, list[str]] = {}
         super().__init__()
 
     def close(self) -> None:
@@ -165,9 +166,9 @@ class MotionJob(SteppedJob):
             before = next(paired) if rig.session_uid in self._pairs else None
             notes: list[str] = []
             made = {action.name: self._write(rig, action, notes, alone=len(actions) == 1) for action in actions}
-            steered = self._steered.get(rig.name)
+            steered = self._steered.get(rig.session_uid)
             if not actions:
-                notes += _set_pose(cast("bpy.types.Scene", context.scene), rig, self._poses[rig.name], steered)
+                notes += _set_pose(cast("bpy.types.Scene", context.scene), rig, self._poses[rig.session_uid], steered)
             if self._plan.strips:
                 copy_strips(source, rig, made)
             moved = [row.target for row in rows_of(cast("bpy.types.Scene", context.scene), source, rig) if row.source]
@@ -194,7 +195,7 @@ class MotionJob(SteppedJob):
                 f'Actions that move only the object "{source.name}", and none of its bones, were left out: '
                 f"{listed(self._plan.left_out)}."
             )
-        if fixed := self._fixed.get(rig.name):
+        if fixed := self._fixed.get(rig.session_uid):
             notes.append(
                 "Bones that are connected do not move away from what they hang on, as those of the source do: "
                 f'{listed(fixed)} of "{rig.name}". To carry that as well disconnect them (Armature > Parent > '
@@ -211,7 +212,7 @@ class MotionJob(SteppedJob):
         self, rig: bpy.types.Object, action: bpy.types.Action, notes: list[str], *, alone: bool
     ) -> bpy.types.Action:
         """Write a target's action, and note what is kept of one that was made before."""
-        keys, assign = self._found[rig.name, action.name], self._plan.assign and alone
+        keys, assign = self._found[rig.session_uid, action.name], self._plan.assign and alone
         made, aside = write_action(rig, action, keys, assign=assign)
         if aside:
             notes.append(
@@ -261,11 +262,11 @@ class MotionJob(SteppedJob):
         motion, turn = current_motion(found_again(self._source)), object_rotation(found_again(self._source))
         for link, pairing in zip(self._targets, pairings, strict=True):
             steps = _transfer_steps(motion, turn, pairing, link, MotionSettings(hands=self._plan.settings.hands))
-            found = self._poses[link.name] = yield from steps
+            found = self._poses[_number(link)] = yield from steps
             self._keep_fixed(link, found)
             steered = yield from steered_steps(link, found)
             if steered is not None:
-                self._steered[link.name] = steered
+                self._steered[_number(link)] = steered
                 yield from steered.posed_steps(link, found)
 
     def _action_steps(self, name: str, pairings: list[BonePairing]) -> Steps[None]:
@@ -288,25 +289,25 @@ class MotionJob(SteppedJob):
             found = yield from within(_transfer_steps(motion, turn, pairing, link, settings), start, end)
             self._keep_fixed(link, found)
             channels = bone_channels(found_again(link), found)
-            if link.name not in self._steered:
+            if _number(link) not in self._steered:
                 steered = yield from steered_steps(link, found)
                 if steered is not None:
-                    self._steered[link.name] = steered
-            if link.name in self._steered:
-                yield from self._steered[link.name].posed_steps(link, found)
-                channels = self._steered[link.name].channels(found_again(link), channels)
+                    self._steered[_number(link)] = steered
+            if _number(link) in self._steered:
+                yield from self._steered[_number(link)].posed_steps(link, found)
+                channels = self._steered[_number(link)].channels(found_again(link), channels)
             movers = movers_of(pairing, (found_again(self._source), found_again(link)))
             if sparse:
                 made = sparse_keys(channels, frames, keys, movers, found_again(self._source))
             else:
                 tolerance = None if self._plan.keys == "ALL" else self._plan.tolerance
                 made = baked_keys(channels, frames, tolerance, keys, movers)
-            self._found[link.name, name] = made
+            self._found[_number(link), name] = made
 
     def _keep_fixed(self, link: SideReference, found: TransferredMotion) -> None:
         """Keep the names of bones that cannot be moved as those of the source are."""
         names = [bone.name for bone in armature_of(found_again(link)).bones]
-        known = self._fixed.setdefault(link.name, [])
+        known = self._fixed.setdefault(_number(link), [])
         known += [names[number] for number in np.flatnonzero(found.fixed) if names[number] not in known]
 
     def _is_sparse(self, keys: ActionKeys, count: float) -> bool:
@@ -336,6 +337,11 @@ class MotionJob(SteppedJob):
             else:
                 parts.append(posed_at(action, rig, some))
         return with_object(Motion.joined(parts), self._action(name), found_again(self._source), frames, first)
+
+
+def _number(link: SideReference) -> int:
+    """Return the number of an armature in this session."""
+    return found_again(link).session_uid
 
 
 def _transfer_steps(

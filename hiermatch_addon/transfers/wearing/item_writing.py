@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import hashlib
-from typing import TYPE_CHECKING, Any
+import json
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import numpy as np
@@ -45,6 +46,9 @@ __all__ = ["check_key", "write_colors", "write_copy", "write_key"]
 
 _KEY = "Fit to "
 """What the name of a shape key begins with that fits the item itself to a body."""
+
+_FITS = "hiermatch_fits"
+"""Custom property of an item: the names of its shape keys that fit it to bodies, as a JSON text."""
 
 _LONGEST_NAME = 63
 """Bytes in the name of a shape key, at most; names of objects can be longer."""
@@ -92,9 +96,20 @@ def write_key(obj: bpy.types.Object, target: Side, fitted: FittedItem) -> None:
             renamed.name = name
     mark_names(obj, target)
     before = None if keys is None else keys.key_blocks.get(name)
-    others = [other for other in shape_key_names(obj) if other.startswith(_KEY)]
+    others = _fit_keys(obj)
     settings = KeySettings(name, value=float(not others)) if before is None else KeySettings.of(before, ())
     add_keys(obj, [settings], (local - rest)[None])
+    cast("Any", obj)[_FITS] = json.dumps(list(dict.fromkeys([*others, name])))
+
+
+def _fit_keys(obj: bpy.types.Object) -> list[str]:
+    """Return the names of the shape keys that fit an item itself to bodies.
+
+    Those of an older version are told by the names of bodies.
+    """
+    bodies = (*bpy.data.objects, *bpy.data.collections)
+    known = {*json.loads(cast("Any", obj).get(_FITS, "[]")), *(_key_name(body.name) for body in bodies)}
+    return [name for name in shape_key_names(obj) if name in known]
 
 
 def write_copy(
@@ -146,7 +161,7 @@ def write_copy(
 def _drop_fit_keys(copy: bpy.types.Object) -> None:
     """Take from a copy the shape keys that fit the item itself to bodies: it would be fitted twice."""
     keys = keys_of(copy)
-    fits = [] if keys is None else [key for key in keys.key_blocks if key.name.startswith(_KEY)]
+    fits = [] if keys is None else [keys.key_blocks[name] for name in _fit_keys(copy)]
     for key in fits:
         copy.shape_key_remove(key)
     if fits and not shape_key_names(copy):

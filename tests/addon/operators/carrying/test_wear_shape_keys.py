@@ -58,6 +58,17 @@ def test_a_copy_of_an_item_with_shape_keys_for_bodies_is_not_fitted_twice(dresse
     assert np.linalg.norm(middle - in_world(target).mean(axis=0)) < 0.3
 
 
+def test_keys_of_the_user_that_are_called_like_fits_are_none(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    shirt.shape_key_add(name="Basis")
+    shirt.shape_key_add(name="Fit to waist")
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    assert shirt.data.shape_keys.key_blocks["Fit to Target"].value == 1
+    target.name = "Giant"
+    assert wear("Shirt", target="Giant") == {"FINISHED"}
+    assert fitted("Shirt", "Giant").data.shape_keys.key_blocks.keys() == ["Basis", "Fit to waist"]
+
+
 def test_a_locked_shape_key_is_not_written_over(dressed_pair):
     _, _, shirt, _ = dressed_pair
     assert wear("Shirt", wear_result="KEY") == {"FINISHED"}

@@ -216,6 +216,27 @@ def test_strips_whose_influence_is_animated_are_copied_with_that():
     assert curves[0].evaluate(8) == 1
 
 
+@pytest.mark.parametrize("operator", [carry, pose])
+def test_a_rig_that_is_renamed_meanwhile_gets_its_motion(monkeypatch, operator):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    bpy.context.scene.frame_set(11)
+    finish = motion_job.MotionJob.finish
+
+    def finish_later(job, context):
+        target.name = "Giant"
+        return finish(job, context)
+
+    monkeypatch.setattr(motion_job.MotionJob, "finish", finish_later)
+    before = posed_vertices(target)
+    assert operator(source="A", target="B") == {"FINISHED"}
+    target.name = "B"
+    bpy.context.scene.frame_set(11)
+    bpy.context.view_layer.update()
+    assert np.abs(posed_vertices(target) - before).max() > 0.1
+
+
 def test_a_rig_that_is_named_twice_gets_an_action_once():
     source, _ = add_person("A")
     add_person("B", "renamed")
