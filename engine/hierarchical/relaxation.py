@@ -108,7 +108,7 @@ class RelaxedMatching:
             return scale * value, scale * (mixture * gradient).ravel()
 
         # The mixture is projected to integers next; more digits were not seen to give better matchings.
-        ends = {"maxiter": max_iterations, "ftol": 1e-5, "gtol": 0.0}
+        ends = {"maxiter": max_iterations, "ftol": 1e-6, "gtol": 0.0}
         found = minimize(objective, np.zeros(self.candidates.size), jac=True, method="L-BFGS-B", options=ends)
         return softmax(found.x.reshape(shape))
 
