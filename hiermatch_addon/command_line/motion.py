@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..properties.bone_pairs import load_pairs, save_pairs
+from ..scene.motion.carried_action_io import carried_before
 from ..scene.motion.rigs import rig_of, two_rigs
 from ..transfers.motion.motion_job import MotionJob
 from ..transfers.options.motion import motion_plan
@@ -59,21 +60,23 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     """Carry motion over and write."""
-    known: set[bpy.types.Action] = set()
+    names: list[str] = []
 
     def start(options: Any, pair: tuple[Side, Side], how: TransferOptions) -> MotionJob:  # noqa: ANN401 - the operator
         scene, rigs = cast("bpy.types.Scene", bpy.context.scene), two_rigs(*pair, written=True)
         if parsed.pairs is not None:
             load_pairs(scene, *rigs, parsed.pairs)
-        known.update(bpy.data.actions)
-        return MotionJob(bpy.context, pair[0], [pair[1]], motion_plan(scene, options, rigs[0]), how)
+        plan = motion_plan(scene, options, rigs[0])
+        names.extend(plan.actions)
+        return MotionJob(bpy.context, pair[0], [pair[1]], plan, how)
 
     def finish(report: Report, pair: tuple[Side, Side], _carried: list[Carried], _prefix: str) -> None:
         scene, rigs = cast("bpy.types.Scene", bpy.context.scene), (rig_of(pair[0]), rig_of(pair[1]))
         if parsed.write_pairs is not None:
             save_pairs(scene, *rigs, parsed.write_pairs.absolute())
             report.written.append(str(parsed.write_pairs.absolute()))
-        clips = [action for action in bpy.data.actions if action not in known]
+        made = [carried_before(rigs[1], bpy.data.actions[name]) for name in names]
+        clips = [action for action in made if action is not None]
         save_outputs(parsed, report, pair[1], console, clean=True, clips=clips)
 
     return run_transfers(parsed, console, "retarget_action", start, finish=finish)

@@ -55,6 +55,13 @@ def test_actions_by_a_pattern_go_to_another_rig_of_the_same_file(folder):
     assert bpy.data.objects["B"].animation_data is None  # the tracks are for the other file only
 
 
+def test_what_is_carried_again_in_its_place_is_a_clip_again(folder):
+    arguments = ["motion", *(f"{folder / 'both.blend'}:{name}" for name in "AB"), "--action=Walk*"]
+    assert main([*arguments, f"--output={folder / 'both.blend'}"]) == 0
+    assert main([*arguments, f"--output={folder / 'out.glb'}"]) == 0
+    assert clips_of(folder / "out.glb")[0] == {"Walk B", "Walk Fast B"}
+
+
 def test_files_of_one_character_each_need_no_names_and_the_action_is_played(folder):
     arguments = [str(folder / f"{name}.blend") for name in "AB"]
     options = ["--in-place", "--keying=all", f"--output={folder / 'out.blend'}"]
