@@ -184,7 +184,8 @@ def run_reported(
     parsed : argparse.Namespace
         The command's arguments.
     inputs : sequence of Path
-        The files that are read; all others that the arguments name are written, which is made sure of first.
+        The files that are read, meshes in the order of the command; all others that the arguments name are written,
+        which is made sure of first.
     console : Console
         Where to write.
     work : callable
@@ -193,15 +194,16 @@ def run_reported(
     Raises
     ------
     ObjectError
-        If the report would be written over a file that is read.
+        If the report would be written over a file that is read, or two results into one file.
     """
     _check_kept([], [] if parsed.report in {None, "-"} else [Path(parsed.report)], inputs)
+    outputs, others = _outputs(parsed, inputs)
+    _check_distinct([*outputs, *others])
     report = Report(parsed.command, parsed.report_key, parsed.least_confidence)
     report.inputs = [file_state(path.absolute()) for path in dict.fromkeys(inputs)]
     code, error = ExitCode.DONE, ""
     try:
         with interruptible() as interruption:
-            outputs, others = _outputs(parsed, inputs)
             _check_kept(outputs, others, inputs)
             for path in (*outputs, *others):
                 check_place(path)
@@ -249,12 +251,25 @@ def _check_kept(outputs: Sequence[Path], others: Sequence[Path], inputs: Sequenc
             raise ObjectError(f'"{path}" is read as well, and would be lost. Write to another file.')
 
 
+def _check_distinct(paths: Sequence[Path]) -> None:
+    """Make sure that no two results go into one file, of which the last alone would be left.
+
+    Raises
+    ------
+    ObjectError
+        If two would.
+    """
+    for number, path in enumerate(paths):
+        if any(_is_same(path, other) for other in paths[:number]):
+            raise ObjectError(f'"{path}" is to be written twice. Give each result a file of its own.')
+
+
 def _is_same(path: Path, other: Path) -> bool:
     """Tell whether two paths lead to one file."""
     try:
         return path.samefile(other)
     except OSError:
-        return path.absolute() == other.absolute()
+        return path.resolve() == other.resolve()
 
 
 def _outputs(parsed: argparse.Namespace, inputs: Sequence[Path]) -> tuple[list[Path], list[Path]]:

@@ -145,4 +145,5 @@ def run_transfers(
             return
         save_results(parsed, report, (source, target), prefix, console, clean=True)
 
-    return run_reported(parsed, [parsed.source.path, parsed.target.path], console, work)
+    read = [getattr(parsed, "pairs", None), parsed.source.path, parsed.target.path]
+    return run_reported(parsed, [path for path in read if path is not None], console, work)

@@ -230,6 +230,27 @@ def test_nothing_is_written_over_what_is_read(arguments, is_lost, tmp_path, caps
     }
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "match Source.obj Target.obj --map=x.json --report=x.json",
+        "match Source.obj Target.obj --map=x.json --report=new/../x.json",
+        "match Source.obj Target.obj --output=x.obj --output=./x.obj",
+        "export Source.obj Target.obj x.json --report=x.json",
+        "motion Source.obj Target.obj --write-pairs=x.json --report=x.json",
+    ],
+)
+def test_two_results_do_not_go_into_one_file(arguments, tmp_path, capsys, monkeypatch):
+    for name in ("Source.obj", "Target.obj", "x.json"):
+        (tmp_path / name).write_text(name)
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments.split()) == 1
+    assert "is to be written twice" in capsys.readouterr().err
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {
+        name: name for name in ("Source.obj", "Target.obj", "x.json")
+    }
+
+
 @pytest.mark.parametrize("name", ["out.blend", "out.obj", "map.npz"])
 def test_files_that_are_read_only_are_not_replaced(name, pair, tmp_path, capsys, monkeypatch):
     """As those are that a pipeline has published; who may replace all, as root may, is let be one who may not."""

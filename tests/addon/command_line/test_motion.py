@@ -85,6 +85,16 @@ def test_pairs_in_a_file_are_enough_for_an_armature_without_a_mesh(folder, capsy
     assert 'The armature "A" moves no mesh' in capsys.readouterr().err
     assert main(["motion", *arguments, f"--pairs={pairs}"]) == 0
     assert clips_of(folder / "out.glb") == ({"Nod B"}, ["B"])
+    before, report = pairs.read_text(), folder / "report.json"
+    for other in (f"--report={pairs}", f"--write-pairs={pairs}"):
+        assert main(["motion", *arguments, f"--pairs={pairs}", other]) == 1
+        assert "is read as well, and would be lost" in capsys.readouterr().err
+        assert pairs.read_text() == before
+    onto = [*arguments[:3], f"--output={folder / 'B.blend'}", f"--pairs={pairs}", f"--report={report}"]
+    assert main(["motion", *onto]) == 1  # the file that is opened is another one
+    arguments[1] = str(folder / "out.glb")
+    assert main(["motion", *arguments, f"--pairs={pairs}", f"--report={report}"]) == 0
+    assert str(pairs) in [one["path"] for one in json.loads(report.read_text())["inputs"]]
 
 
 def test_what_cannot_be_done_is_told(folder, capsys, monkeypatch):
