@@ -121,9 +121,7 @@ def _flag(name: str) -> str:
 
 
 def _default(described: Any) -> Any:  # noqa: ANN401 - a property, and whatever its values are
-    if described.type == "COLLECTION":
-        return ()
-    return set(described.default_flag) if getattr(described, "is_enum_flag", False) else described.default
+    return () if described.type == "COLLECTION" else described.default
 
 
 def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
@@ -135,7 +133,7 @@ def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
         shown = "on" if described.default else "off"
     elif described.type == "ENUM":
         words = [item.identifier.lower() for item in described.enum_items]
-        about |= {"type": _word(described, words), "metavar": f"{{{','.join(words)}}}"}
+        about |= {"type": _word(described), "metavar": f"{{{','.join(words)}}}"}
         said = zip(words, (item.description for item in described.enum_items), strict=True)
         text = " ".join([text, *(f"{word}: {meaning}." for word, meaning in said if meaning)])
         shown = described.default.lower()
@@ -155,14 +153,13 @@ def _declaration(described: Any) -> dict[str, Any]:  # noqa: ANN401 - a property
     return about
 
 
-def _word(described: Any, words: list[str]) -> Callable[[str], str | set[str]]:  # noqa: ANN401 - a property
-    def parse(text: str) -> str | set[str]:
-        chosen = [word.strip().lower() for word in text.split(",")] if described.is_enum_flag else [text.lower()]
-        if not set(chosen) <= set(words):
-            raise argparse.ArgumentTypeError(f'"{text}" is none of {", ".join(words)}')
-        identifiers = {item.identifier.lower(): item.identifier for item in described.enum_items}
-        found = [identifiers[word] for word in chosen]
-        return set(found) if described.is_enum_flag else found[0]
+def _word(described: Any) -> Callable[[str], str]:  # noqa: ANN401 - a property
+    identifiers = {item.identifier.lower(): item.identifier for item in described.enum_items}
+
+    def parse(text: str) -> str:
+        if text.lower() not in identifiers:
+            raise argparse.ArgumentTypeError(f'"{text}" is none of {", ".join(identifiers)}')
+        return identifiers[text.lower()]
 
     return parse
 
