@@ -105,16 +105,16 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
     notes: list[str] = []
     for argument in arguments:
         path = argument.path
-        if path == opened:
+        if opened is not None and path.samefile(opened):
             objects = list(view_layer_of(bpy.context).objects)
             chosen = _named(argument, objects) or (whole and _only_character(argument, objects))
             chosen = chosen or _choose([obj for obj in objects if obj.type == "MESH"], argument)
         elif path.suffix.lower() == ".blend":
             chosen = _append(argument, whole=whole)
         else:
-            if path not in imported:
-                imported[path] = _import(path)
-            chosen = _chosen_of_import(imported[path], argument, notes, whole=whole)
+            if path.resolve() not in imported:
+                imported[path.resolve()] = _import(path)
+            chosen = _chosen_of_import(imported[path.resolve()], argument, notes, whole=whole)
         found.append(chosen)
     context = bpy.context
     for obj in (part for side in found for part in parts_of(side)):

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-from os.path import normpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,8 +29,6 @@ Work through the pairs of a manifest: a table (.csv) or .json with source, targe
 subcommand as further columns; paths are relative to the manifest.  Each pair runs in a Blender of its own.  What is
 done stays done: the same command again goes on where it was interrupted.
 """
-
-_USAGE = "%(prog)s MANIFEST [--jobs N] [--shard I/N] [options]"
 
 
 def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
@@ -195,7 +192,7 @@ def _checked_arguments(pair: Pair, check: Callable[[list[str]], object]) -> tupl
         paths = [mesh_argument(text).path for text in (pair.source, pair.target)]
     except argparse.ArgumentTypeError as error:
         raise UsageError(str(error)) from error
-    if set(pair.written) & {normpath(path) for path in paths}:
+    if set(pair.written) & set(pair.read):
         raise UsageError("it would write over its own source or target")  # and never be known as done
     return arguments, [file_state(path) for path in dict.fromkeys(paths)]
 

@@ -10,7 +10,7 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
-from os.path import normpath
+from os.path import normcase, normpath, realpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -74,12 +74,12 @@ class Pair:
 
     @property
     def written(self) -> tuple[str, ...]:
-        """All files that it writes."""
-        return (*self.outputs, *([self.map] if self.map else []))
+        """All files that it writes, each by the one path that all ways to it have in common."""
+        return tuple(map(_plain_path, (*self.outputs, *([self.map] if self.map else []))))
 
     @property
     def read(self) -> tuple[str, ...]:
-        """All files that it reads, as far as they are of a known kind."""
+        """All files that it reads, as far as they are of a known kind, as in `written`."""
         return tuple(filter(None, (_path_in(text) for text in (self.source, self.target))))
 
     @property
@@ -217,6 +217,8 @@ def _table_rows(text: str) -> list[dict[str, str]]:
 def _json_rows(text: str) -> tuple[list[dict[str, str]], dict[str, str]]:
     """Return the pairs, and the options of all of them."""
     plain = json.loads(text)
+    if isinstance(plain, dict) and (unknown := sorted(set(plain) - {"options", "pairs"})):
+        raise ValueError(f'it has {", ".join(unknown)} beside "options" and "pairs"')
     pairs = plain.get("pairs") if isinstance(plain, dict) else plain
     common = plain.get("options", {}) if isinstance(plain, dict) else {}
     if not isinstance(pairs, list) or not all(isinstance(pair, dict) for pair in [*pairs, common]):
@@ -284,9 +286,14 @@ def _check_outputs(pairs: Sequence[Pair]) -> None:
             writers[written] = pair.number
 
 
+def _plain_path(path: str | Path) -> str:
+    """Return what all ways to write a path come to, through links, or in small letters where these do not matter."""
+    return normcase(realpath(path))
+
+
 def _path_in(text: str) -> str:
     """Return the path of FILE or FILE:NAME; empty if it is no file of a known kind, which its own row will tell."""
     try:
-        return normpath(mesh_argument(text).path)
+        return _plain_path(mesh_argument(text).path)
     except argparse.ArgumentTypeError:
         return ""

@@ -392,6 +392,17 @@ def test_a_second_blend_brings_its_rig(folder, tmp_path):
         load_meshes([arguments[0], MeshArgument(tmp_path / "rigged.blend", "Nobody")])
 
 
+def test_one_file_may_be_named_in_several_ways(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(folder)
+    (tmp_path / "link").symlink_to(folder, target_is_directory=True)
+    for other in ("pair.blend", tmp_path / "link" / "pair.blend", Path("..", folder.name, "pair.blend")):
+        found, _ = load_meshes([MeshArgument(folder / "pair.blend", "Source"), MeshArgument(Path(other), "Target")])
+        assert [obj.name for obj in found] == ["Source", "Target"]
+    paths = [folder / "Source.obj", Path("..", folder.name, "Source.obj")]
+    (first, second), _ = load_meshes([MeshArgument(path) for path in paths])
+    assert first == second
+
+
 def test_characters_are_named_by_their_armature_or_collection(tmp_path):
     source, _ = add_rigged(resolution=4)
     parts = split_up(source, lambda centers: centers[:, 0] > 0)

@@ -318,6 +318,9 @@ def test_json_has_options_for_all(tmp_path):
     path.write_text(json.dumps({"options": {"pionts": 32}, "pairs": pairs}))
     with pytest.raises(ObjectError, match="pionts"):
         read_manifest(path, {}, "match")
+    path.write_text(json.dumps({"option": {"points": 32}, "pairs": pairs}))
+    with pytest.raises(ObjectError, match='it has option beside "options" and "pairs"'):
+        read_manifest(path, {}, "match")
     path.write_text(json.dumps({"options": {"command": "wear"}, "pairs": pairs}))
     with pytest.raises(ObjectError, match="has command among the options for all pairs"):
         read_manifest(path, {}, "match")
@@ -375,6 +378,15 @@ def test_a_pair_may_read_what_one_before_it_writes(tmp_path):
     path = tmp_path / "pairs.csv"
     path.write_text("source,target,output\na.obj,b.obj,o.blend\no.blend:b,c.obj,p.blend\n")
     assert len(read_manifest(path, {}, "match")) == 2
+
+
+def test_links_lead_to_the_same_file(tmp_path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real", target_is_directory=True)
+    path = tmp_path / "pairs.csv"
+    path.write_text("source,target,output\na.obj,b.obj,real/o.blend\na.obj,c.obj,link/o.blend\n")
+    with pytest.raises(ObjectError, match="Rows 1 and 2 of the manifest write the same"):
+        read_manifest(path, {}, "match")
 
 
 @pytest.mark.parametrize("text", ["{", "3", '{"pairs": 3}', '["a"]', '[{"source": ["a"]}]'])
