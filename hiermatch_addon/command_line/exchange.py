@@ -14,8 +14,8 @@ from ..properties.summary import remember
 from ..storage.match_exchange import apply_match, collect_match
 from ..storage.match_file import SUFFIXES, load_match, save_match
 from .command import EXIT_CODES
-from .match import add_pair_arguments, load_pair
-from .outputs import KINDS, output_argument, save
+from .match import add_pair_arguments, load_pair, save_outputs
+from .outputs import KINDS, output_argument
 from .reports import add_report_options, run_reported
 
 if TYPE_CHECKING:
@@ -87,8 +87,6 @@ def _import(parsed: argparse.Namespace, console: Console) -> ExitCode:
         remember(state_of(context).summary, stored, stored.names, parsed.prefix, 0.0)
         refresh(cast("bpy.types.Scene", context.scene))
         report.add_match(stored)
-        for path in parsed.output:
-            save(path, target)
-            report.written.append(str(path.absolute()))
+        save_outputs(parsed, report, target, console, clean=False)
 
     return run_reported(parsed, [parsed.source.path, parsed.target.path, parsed.map], console, work)

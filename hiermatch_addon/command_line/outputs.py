@@ -13,6 +13,7 @@ import bpy
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..common.file_writing import beside, check_place
+from ..common.phrases import listed
 from ..scene.character import parts_of
 from ..scene.motion.nla_strips import add_tracks
 from ..scene.motion.rigs import rig_of
@@ -96,14 +97,29 @@ def save(
 
 
 def _select(side: Side, along: Sequence[bpy.types.Object]) -> None:
-    """Select the objects of a side, the armatures that move them, what was fitted to them and what goes `along`."""
+    """Select the objects of a side, the armatures that move them, what was fitted to them and what goes `along`.
+
+    Of what was fitted that which is hidden stays out, as copies that were kept aside are.
+
+    Raises
+    ------
+    ObjectError
+        If anything else cannot be selected.
+    """
     layer, parts = view_layer_of(bpy.context), parts_of(side)
     movers = [obj.parent for obj in parts]
     movers += [getattr(modifier, "object", None) for obj in parts for modifier in obj.modifiers]
-    fitted = list(dict.fromkeys(item for body in (side, *parts) for item in fitted_to(body)))
-    wanted = [*parts, *fitted, *along, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
-    for other in layer.objects:
-        other.select_set(other in wanted)
+    fitted = {item for body in (side, *parts) for item in fitted_to(body)}
+    wanted = [*parts, *along, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
+    layer.update()
+    for other in list(layer.objects):
+        if other in wanted:
+            other.hide_set(state=False)
+            if other.library is None:
+                other.hide_viewport = other.hide_select = False
+        other.select_set(other in wanted or other in fitted)
+    if lost := [obj.name for obj in dict.fromkeys(wanted) if not obj.select_get()]:
+        raise ObjectError(f"{listed(lost)} cannot be written while hidden. Show the collection in the Outliner.")
     layer.objects.active = parts[0]
 
 

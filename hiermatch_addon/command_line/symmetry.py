@@ -10,6 +10,8 @@ import numpy as np
 
 from ...engine import DIRECT, symmetry_map_steps
 from ..common.access import mesh_of, view_layer_of
+from ..common.errors import ObjectError
+from ..common.phrases import listed
 from ..scene.character import parts_of
 from ..scene.mesh_io import position_digest, read_mesh, topology
 from ..scene.pair import check_object
@@ -20,10 +22,9 @@ from ..transfers.options.symmetrise import symmetrise_settings
 from ..transfers.symmetrise import SymmetriseJob
 from .command import EXIT_CODES
 from .console import drive
-from .match import add_result_options
+from .match import add_result_options, save_outputs
 from .meshes import load_meshes, mesh_argument
 from .options import add_options, chosen_options, given_options
-from .outputs import save
 from .reports import add_report_options, run_reported
 
 if TYPE_CHECKING:
@@ -60,7 +61,12 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     def work(report: Report) -> None:
         console.progress(0.0, "Reading files")
         (side,), notes = load_meshes([parsed.mesh], whole=False)
-        obj = parts_of(side)[0]
+        obj, *others = parts_of(side)
+        if others:
+            raise ObjectError(
+                f'"{side.name}" has several meshes, of which one is taken at a time. Name it behind a colon: '
+                f"{listed([obj.name, *(other.name for other in others)])}."
+            )
         report.add_object("mesh", parsed.mesh, obj)
         report.add_notes(notes)
         context = bpy.context
@@ -69,14 +75,14 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         if parsed.output:
             settings = symmetrise_settings(chosen_options("symmetrise", given_options("symmetrise", parsed)))
             job = SymmetriseJob(context, obj, settings)
-        if parsed.map is not None or job is None:
+        if parsed.map is not None or parsed.strict or job is None:
             _find_map(parsed, report, obj, console)
         if job is not None:
             drive(job, context, console)
-            report.carried.append({"target": obj.name, "done": [job.finish(context).done]})
-        for path in parsed.output:
-            save(path, obj)
-            report.written.append(str(path.absolute()))
+            made = job.finish(context)
+            report.carried.append({"target": obj.name, "done": [made.done]})
+            report.add_notes(made.notes)
+        save_outputs(parsed, report, obj, console, clean=False)
 
     return run_reported(parsed, [parsed.mesh.path], console, work)
 

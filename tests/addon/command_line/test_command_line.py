@@ -309,6 +309,34 @@ def test_symmetry_finds_the_map_and_symmetrises(tmp_path, monkeypatch):
     assert main(["import", body, body, str(tmp_path / "map.npz"), f"--output={output}"]) == 1
 
 
+def test_symmetry_tells_of_a_mesh_that_is_hardly_symmetric(tmp_path, monkeypatch, capsys):
+    quick = MatchSettings(**{name: value for name, value in QUICK.items() if name != "dense"})
+    for module in (symmetry, symmetrise):
+        monkeypatch.setattr(module, "symmetry_map_steps", lambda mesh: symmetry_map_steps(mesh, quick))
+    monkeypatch.setattr(symmetrise, "asymmetry_note", lambda name, _: f'"{name}" is hardly symmetric.')
+    add_blob("Body").vertex_groups.new(name="Arm.L").add(range(30), 1.0, "REPLACE")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "body.blend"))
+    output, report = tmp_path / "out.blend", tmp_path / "report.json"
+    wanted = ["symmetry", str(tmp_path / "body.blend"), f"--output={output}", f"--report={report}"]
+    assert main(wanted) == 0
+    assert '"Body" is hardly symmetric.' in capsys.readouterr().err
+    assert report_of(report)["notes"] == ['"Body" is hardly symmetric.']
+    output.unlink()
+    assert main([*wanted, "--strict", "--least-confidence=1.5"]) == 3
+    assert report_of(report)["doubtful"]
+    assert output.exists()
+
+
+def test_symmetry_is_that_of_one_mesh(tmp_path, capsys):
+    source, rig = add_rigged(resolution=4)
+    whole, *parts = rig.name, *(part.name for part in split_up(source, lambda centers: centers[:, 0] > 0))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "character.blend"))
+    assert main(["symmetry", f"{tmp_path / 'character.blend'}:{whole}"]) == 1
+    said = capsys.readouterr().err
+    assert f'"{whole}" has several meshes' in said
+    assert all(f'"{part}"' in said for part in parts)
+
+
 @pytest.mark.slow
 def test_retarget_carries_the_rig_into_another_file(tmp_path):
     add_rigged_pair()
@@ -335,6 +363,34 @@ def test_retarget_carries_the_rig_into_another_file(tmp_path):
         assert any(modifier.type == "ARMATURE" for modifier in obj.modifiers)
         assert "upper front.L" in obj.vertex_groups
         assert not [layer for layer in obj.data.color_attributes if layer.name.startswith("HM")]
+
+
+@pytest.mark.parametrize("hidden", ["hide_set", "hide_viewport", "hide_select"])
+def test_what_is_hidden_is_written_all_the_same(hidden, tmp_path):
+    source, rig = add_rigged(resolution=4)
+    for obj in (source, rig):
+        if hidden == "hide_set":
+            obj.hide_set(state=True)
+        else:
+            setattr(obj, hidden, True)
+    save(tmp_path / "hidden.glb", source)
+    (back,), _ = load_meshes([MeshArgument(tmp_path / "hidden.glb")])
+    assert len(back.data.polygons) > 0
+    assert find_armature(back) is not None
+
+
+def test_what_cannot_be_written_because_its_collection_is_hidden_is_told(tmp_path):
+    source, rig = add_rigged(resolution=4)
+    shut = bpy.data.collections.new("Shut")
+    bpy.context.scene.collection.children.link(shut)
+    shut.objects.link(rig)
+    bpy.context.scene.collection.objects.unlink(rig)
+    child = bpy.context.view_layer.layer_collection.children["Shut"]
+    for place, switch in ((shut, "hide_viewport"), (child, "exclude")):
+        setattr(place, switch, True)
+        with pytest.raises(ObjectError, match=f'"{rig.name}" cannot be written while hidden'):
+            save(tmp_path / "hidden.glb", source)
+    assert not (tmp_path / "hidden.glb").exists()
 
 
 @pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "fbx", "glb", "gltf"])
