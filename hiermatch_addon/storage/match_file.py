@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import zipfile
 import zlib
 from dataclasses import dataclass, replace
@@ -45,8 +46,10 @@ SUFFIXES = (".npz", ".json")
 
 _BAD_FILE = (
     ValueError,
+    OverflowError,
     KeyError,
     TypeError,
+    AttributeError,
     EOFError,
     IndexError,
     MemoryError,
@@ -261,22 +264,32 @@ def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> 
         notes=tuple(str(note) for note in header.get("notes", ())),
         left_out=tuple(int(number) for number in header.get("left_out", ())),
     )
+    if not set(stored.left_out) <= set(range(len(source_points.corners))):
+        raise ValueError("points were left out that it does not have")
     return MatchFile(stored, counts, maps, tuple(others), kind)
 
 
 def _answer(name: str, plain: Mapping[str, Any], points: CornerPoints, distortion: NDArray[np.float64]) -> Answer:
     quality = plain.get("quality")
     if quality is not None:
-        known = {name: str(value) if name == "sentence" else float(value) for name, value in quality.items()}
+        known = {name: str(value) if name == "sentence" else _finite(value) for name, value in quality.items()}
         quality = Quality.from_plain(known)
     return Answer(
         name,
         points,
         distortion,
-        float(plain["distortion"]),
-        float(plain["orientation"]),
+        _finite(plain["distortion"]),
+        _finite(plain["orientation"]),
         bool(plain["proven"]),
-        float(plain["gap"]),
+        _finite(plain["gap"]),
         quality,
         bool(plain.get("refined", False)),
     )
+
+
+def _finite(value: Any) -> float:  # noqa: ANN401 - whatever JSON holds
+    """Return a number that JSON and Blender can hold."""
+    number = float(value)
+    if not math.isfinite(number):
+        raise ValueError(f"{number} is no finite number")
+    return number

@@ -181,6 +181,15 @@ def rewritten(path, change):
         lambda header, _: header["written"].update(colour=True),
         lambda header, _: header["answers"][0]["quality"].update(confidence="high"),
         lambda header, arrays: header.clear() or arrays.clear(),
+        lambda header, _: header.update(answers=[3]),
+        lambda header, _: header.update(written=[1]),
+        lambda header, _: header["answers"][0].update(quality=[1]),
+        lambda header, _: header["source"].update(vertices=float("inf")),
+        lambda header, _: header.update(left_out=[99]),
+        lambda header, _: header.update(left_out=[-1]),
+        lambda header, _: header["answers"][0].update(distortion=float("nan")),
+        lambda header, _: header["answers"][0].update(gap=float("inf")),
+        lambda header, _: header["answers"][0]["quality"].update(confidence=float("nan")),
         lambda header, _: header.update(version=99),
         lambda header, _: header.update(format="something else"),
     ],
@@ -188,6 +197,13 @@ def rewritten(path, change):
 def test_wrong_content_is_told(exported, change):
     with pytest.raises(ObjectError, match=r'"match\.json"'):
         load_match(rewritten(exported["json"], change))
+
+
+def test_arrays_without_names_are_told(exported):
+    plain = json.loads(exported["json"].read_text())
+    exported["json"].write_text(json.dumps(plain | {"arrays": [1]}))
+    with pytest.raises(ObjectError, match="damaged"):
+        load_match(exported["json"])
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
