@@ -11,9 +11,9 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from ..common.access import view_layer_of
 
@@ -104,7 +104,8 @@ class Console:
         if self._result is None:
             sys.stderr.write(text)
         else:
-            _write(_ERRORS, text)
+            with suppress(OSError):  # of a terminal that was closed
+                _write(_ERRORS, text)
 
 
 def drive(job: Job, context: bpy.types.Context, console: Console) -> None:
@@ -132,23 +133,26 @@ class Interruption:
 
 @contextmanager
 def interruptible() -> Iterator[Interruption]:
-    """Let Ctrl-C and a polite end of the process raise KeyboardInterrupt; in the background Blender does not."""
+    """Let Ctrl-C, a polite end of the process and a terminal that is closed raise KeyboardInterrupt.
+
+    In the background Blender does not.  What was started to outlive its terminal goes on.
+    """
     state = Interruption()
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:
         state.happened = True
         raise KeyboardInterrupt
 
-    before = {number: signal.signal(number, interrupt) for number in _SIGNALS}
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if (hangup := getattr(signal, "SIGHUP", None)) and signal.getsignal(hangup) != signal.SIG_IGN:  # as of nohup
+        numbers.append(hangup)
+    before = {number: signal.signal(number, interrupt) for number in numbers}
     try:
         yield state
     finally:
         for number, handler in before.items():
             if handler is not None:  # None: it was not Python's, and cannot be put back
                 signal.signal(number, handler)
-
-
-_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 def _write(stream: int, text: str) -> None:

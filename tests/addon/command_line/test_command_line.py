@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import signal
 from pathlib import Path
 
 import bpy
@@ -166,6 +167,22 @@ def test_interruption_is_told(pair, tmp_path, monkeypatch):
     assert main(["match", *pair, f"--output={output}", f"--report={report}"]) == 130
     assert report_of(report)["status"] == "interrupted"
     assert not output.exists()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="this system has no terminals that hang up")
+@pytest.mark.parametrize("ignored", [False, True])
+def test_a_closed_terminal_interrupts_unless_it_is_not_to_matter(ignored, pair, tmp_path, monkeypatch):
+    def hang_up(*_):
+        os.kill(os.getpid(), signal.SIGHUP)
+        raise ObjectError("Nobody was interrupted.")
+
+    monkeypatch.setattr(match, "drive", hang_up)
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN if ignored else signal.SIG_DFL)
+    try:
+        assert main(["match", *pair, f"--report={tmp_path / 'report.json'}"]) == (1 if ignored else 130)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    assert report_of(tmp_path / "report.json")["status"] == ("failed" if ignored else "interrupted")
 
 
 def test_a_bug_is_reported_and_not_swallowed(pair, tmp_path, monkeypatch):
