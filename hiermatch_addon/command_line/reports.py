@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import argparse
 import json
+import math
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,7 +23,6 @@ from .command import ExitCode
 from .console import Console, interruptible
 
 if TYPE_CHECKING:
-    import argparse
     from collections.abc import Callable, Sequence
 
     from ..jobs.transfer_job import Carried
@@ -29,7 +30,16 @@ if TYPE_CHECKING:
     from ..storage.stored_match import StoredMatch
     from .meshes import MeshArgument
 
-__all__ = ["FORMAT", "STATUSES", "Report", "add_report_options", "file_state", "run_reported"]
+__all__ = [
+    "FORMAT",
+    "STATUSES",
+    "Report",
+    "add_least_confidence",
+    "add_report_options",
+    "confidence_of",
+    "file_state",
+    "run_reported",
+]
 
 FORMAT = "hiermatch-report"
 """What every report says it is."""
@@ -81,9 +91,9 @@ class Report:
 
     @property
     def doubtful(self) -> bool:
-        """Whether there is a match with dense maps that are not to be trusted."""
-        quality = (self.match or {}).get("quality")
-        return quality is not None and quality["confidence"] < self.least_confidence
+        """Whether something was found or carried by a match with dense maps that are not to be trusted."""
+        confidence = confidence_of(self.match, self.carried)
+        return confidence is not None and confidence < self.least_confidence
 
     def add_object(self, role: str, argument: MeshArgument, obj: Side) -> None:
         """Say what was loaded."""
@@ -116,7 +126,8 @@ class Report:
         """Say what was carried over."""
         for one in carried:
             done = [part.done for part in one.reports if part.done]
-            self.carried.append({"target": one.target, "done": done})
+            confidence = None if one.verdict is None else one.verdict.confidence
+            self.carried.append({"target": one.target, "done": done, "confidence": confidence})
             for part in one.reports:
                 self.add_notes((*part.notes, *part.remarks))
 
@@ -155,14 +166,35 @@ def add_report_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--strict", action="store_true", help="End with the exit code 3 if the match is doubtful; it is written anyway."
     )
+    add_least_confidence(group)
+    group.add_argument("--quiet", action="store_true", help="Tell no progress, only errors.")
+
+
+def add_least_confidence(group: Any) -> None:  # noqa: ANN401 - argparse's groups have no public type
+    """Add what a doubtful match is."""
     group.add_argument(
         "--least-confidence",
-        type=float,
+        type=_finite,
         default=_LEAST_CONFIDENCE,
         metavar="X",
         help="Below it, 0 to 1, a dense match is called doubtful. (default: %(default)s)",
     )
-    group.add_argument("--quiet", action="store_true", help="Tell no progress, only errors.")
+
+
+def _finite(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f'"{text}" is no number')
+    return number
+
+
+def confidence_of(match: dict[str, Any] | None, carried: Sequence[dict[str, Any]]) -> float | None:
+    """Return the least confidence that a report knows of, from its match and what was carried; None if it has none."""
+    known = [(match or {}).get("quality") or {}, *carried]
+    return min((one["confidence"] for one in known if one.get("confidence") is not None), default=None)
 
 
 def file_state(path: Path) -> dict[str, Any]:

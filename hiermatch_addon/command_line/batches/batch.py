@@ -12,7 +12,7 @@ from ..command import EXIT_CODES, ExitCode, UsageError
 from ..console import Console, interruptible
 from ..meshes import mesh_argument
 from ..options import add_options, given_options, option_names, quoted_names
-from ..reports import file_state
+from ..reports import add_least_confidence, file_state
 from .ledger import Ledger, counts, summary_rows
 from .manifest import COMMANDS, read_manifest, take_shard
 from .workers import Ended, Task, run_tasks
@@ -69,7 +69,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
     group.add_argument(
         "--strict", action="store_true", help="End with the exit code 3 if all is done and a match is doubtful."
     )
-    group.add_argument("--least-confidence", type=float, metavar="X", help="Below it a dense match is doubtful.")
+    add_least_confidence(group)
     group.add_argument("--quiet", action="store_true", help="Tell no progress, only errors.")
     known: set[str] = set()
     for command, (operator, *_) in COMMANDS.items():
@@ -96,7 +96,8 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         except KeyboardInterrupt:
             interrupted = True
             console.error("Interrupted. What is done stays done; the same command goes on from here.")
-    rows = summary_rows(ledger, pairs, any_options=parsed.summary)  # those of the shards need not be given again
+    # The options of the shards need not be given again.
+    rows = summary_rows(ledger, pairs, parsed.least_confidence, any_options=parsed.summary)
     whole = parsed.summary or shard == (1, 1)
     path = ledger.write_summary(rows, "summary" if whole else f"summary-{shard[0]}-of-{shard[1]}")
     found = counts(rows)
@@ -161,10 +162,9 @@ def _tasks(
             failed |= dict.fromkeys(pair.written, pair)
             continue
         told = [f"--report={ledger.report_path(pair)}", f"--report-key={pair.key}"]
+        told.append(f"--least-confidence={parsed.least_confidence}")
         if pair.command != "match" and "accept_doubtful" not in dict(pair.options):
             told.append("--accept-doubtful")  # one bad pair of many is looked at later: the summary names it
-        if parsed.least_confidence is not None:
-            told.append(f"--least-confidence={parsed.least_confidence}")
         ledger.report_path(pair).unlink(missing_ok=True)  # else that of a former run would stand for a crashed one
         tasks[pair.stem] = Task(pair.stem, [*arguments, *told], ledger.log_path(pair), after), pair, inputs
         writers |= dict.fromkeys(pair.written, pair.stem)

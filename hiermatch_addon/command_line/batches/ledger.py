@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...common.file_writing import write_whole
-from ..reports import FORMAT, STATUSES, file_state
+from ..reports import FORMAT, STATUSES, confidence_of, file_state
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -119,13 +119,19 @@ class Ledger:
         return path
 
 
-def summary_rows(ledger: Ledger, pairs: Sequence[Pair], *, any_options: bool = False) -> list[dict[str, Any]]:
-    """Return a line for each pair; those without a report are "pending".  See `Ledger.report_of`."""
+def summary_rows(
+    ledger: Ledger, pairs: Sequence[Pair], least_confidence: float, *, any_options: bool = False
+) -> list[dict[str, Any]]:
+    """Return a line for each pair; those without a report are "pending".  See `Ledger.report_of`.
+
+    Those below the least confidence are doubtful, whichever it was when they were done.
+    """
     rows = []
     for pair in pairs:
         report = ledger.report_of(pair, any_options=any_options) or {}
         match = report.get("match") or {}
         quality = match.get("quality") or {}
+        confidence = confidence_of(match, report.get("carried", ()))
         rows.append(
             {
                 "row": pair.number,
@@ -135,9 +141,9 @@ def summary_rows(ledger: Ledger, pairs: Sequence[Pair], *, any_options: bool = F
                 "target": pair.target,
                 "output": "|".join(pair.outputs),
                 "status": report.get("status", "pending"),
-                "doubtful": report.get("doubtful", False),
+                "doubtful": confidence is not None and confidence < least_confidence,
                 "seconds": report.get("seconds"),
-                "confidence": quality.get("confidence"),
+                "confidence": confidence,
                 "distortion": match.get("distortion"),
                 "sentence": quality.get("sentence", ""),
                 "alternatives": len(match["alternatives"]) if "alternatives" in match else None,

@@ -97,6 +97,16 @@ def test_pairs_in_a_file_are_enough_for_an_armature_without_a_mesh(folder, capsy
     assert str(pairs) in [one["path"] for one in json.loads(report.read_text())["inputs"]]
 
 
+def test_a_stored_match_may_be_doubtful_as_well(folder, monkeypatch):
+    match_at_once(monkeypatch, confidence=0.4)
+    arguments = [f"{folder / 'both.blend'}:{name}" for name in "AB"]
+    assert main(["match", *arguments, f"--output={folder / 'both.blend'}"]) == 0
+    report = folder / "report.json"
+    wanted = [f"--output={folder / 'out.glb'}", "--strict", f"--report={report}"]
+    assert main(["motion", *arguments, "--action=Nod", *wanted]) == 3
+    assert json.loads(report.read_text())["carried"][0]["confidence"] == 0.4
+
+
 def test_what_cannot_be_done_is_told(folder, capsys, monkeypatch):
     both = str(folder / "both.blend")
     output = f"--output={folder / 'out.glb'}"

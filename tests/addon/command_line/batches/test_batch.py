@@ -44,7 +44,8 @@ if not bad:
     pathlib.Path(given["output"]).write_text("output")
 report = {"format": "hiermatch-report", "key": given["report-key"], "status": "failed" if bad else "done",
           "doubtful": "doubt" in source.name, "error": "It is bad." if bad else "", "inputs": inputs, "seconds": 1.5,
-          "match": {"distortion": 0.25, "quality": {"confidence": 0.75, "sentence": "Fine."}},
+          "match": {"distortion": 0.25, "quality": {"confidence": 0.25 if "doubt" in source.name else 0.75,
+                                                    "sentence": "Fine."}},
           "written": [] if bad else [given["output"]]}
 pathlib.Path(given["report"]).write_text(json.dumps(report))
 sys.exit(1 if bad else 0)
@@ -198,6 +199,17 @@ def test_strict_tells_of_doubt(stand_in):
     assert stand_in.run("--strict")[0] == 3
     assert stand_in.run()[0] == 0
     assert stand_in.summary["doubt"]["doubtful"] == "True"
+
+
+def test_doubt_is_by_the_least_confidence_that_is_given_now(stand_in):
+    stand_in.write(["a", "doubt"])
+    assert stand_in.run() == (0, ["a", "doubt"])
+    for least, doubtful in (("0.8", ["True", "True"]), ("0.2", ["False", "False"]), ("0.5", ["False", "True"])):
+        code, tried = stand_in.run("--strict", f"--least-confidence={least}")
+        assert (code, tried) == (3 if "True" in doubtful else 0, [])
+        assert [row["doubtful"] for row in stand_in.summary.values()] == doubtful
+    for wrong in ("nan", "inf", "much"):
+        assert stand_in.run(f"--least-confidence={wrong}") == (2, [])
 
 
 def test_a_wrong_value_fails_its_own_row_only(stand_in, capsys):
@@ -413,7 +425,7 @@ def test_a_pair_without_a_boolean_is_told(stand_in):
     (pair,) = read_manifest(stand_in.manifest, {}, "match")
     with pytest.raises(UsageError, match="must be true or false"):
         pair.arguments()
-    assert summary_rows(Ledger(stand_in.folder / "nothing"), [pair])[0]["status"] == "pending"
+    assert summary_rows(Ledger(stand_in.folder / "nothing"), [pair], 0.5)[0]["status"] == "pending"
 
 
 FOLLOWING = (
