@@ -121,9 +121,14 @@ def save_results(
     A `clean` target carries what was transferred into files other than a .blend, but no colors, groups and attributes
     of the match, which an engine or a renderer would take for its own.
     """
-    match = collect_match(*pair, prefix) if is_own(pair[0]) else kept_linked(*pair, prefix)
+    if is_own(pair[0]):
+        match = collect_match(*pair, prefix) if is_own(pair[1]) else None  # which is kept nowhere then
+    else:
+        match = kept_linked(*pair, prefix)
     if match is not None:
         report.add_match(match.stored)
+    elif parsed.map is not None:
+        report.add_notes([f'"{parsed.map}" was not written: of two meshes of other files no match is kept.'])
     if match is not None and parsed.map is not None:
         console.progress(1.0, f"Writing {parsed.map}")
         save_match(match, parsed.map.absolute())

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ..common.errors import ObjectError
+from ..jobs.transfer_job import TransferJob
 from ..scene.character import parts_of
 from ..scene.worn.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
@@ -16,12 +17,13 @@ from .command import EXIT_CODES
 from .match import add_pair_arguments, add_result_options
 from .options import add_options
 from .reports import add_report_options
-from .retarget import NOT_OF_THE_MATCH, run_transfers, transferring
+from .retarget import NOT_OF_THE_MATCH, run_transfers
 
 if TYPE_CHECKING:
     import argparse
 
     from ..jobs.transfer import Transfer
+    from ..jobs.transfer_job import TransferOptions
     from ..scene.character import Side
     from .command import ExitCode
     from .console import Console
@@ -60,7 +62,11 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
             )
         return _undressed_pair(options, pair)
 
-    return run_transfers(parsed, console, "wear", transferring(_transfers, optional=False), choose=choose)
+    def start(options: Any, pair: tuple[Side, Side], how: TransferOptions) -> TransferJob:  # noqa: ANN401 - as below
+        writes = options.wear_hide != "NONE"  # else the body may be another file's
+        return TransferJob(bpy.context, pair[0], [pair[1]], lambda: _transfers(options), how, writes=writes)
+
+    return run_transfers(parsed, console, "wear", start, choose=choose)
 
 
 def _undressed_pair(options: Any, pair: tuple[Side, Side]) -> tuple[Side, Side]:  # noqa: ANN401 - as below
@@ -72,6 +78,6 @@ def _undressed_pair(options: Any, pair: tuple[Side, Side]) -> tuple[Side, Side]:
     return undressed(source, options.items, bpy.context.evaluated_depsgraph_get()), target
 
 
-def _transfers(options: Any, _pair: tuple[Side, Side]) -> list[Transfer]:  # noqa: ANN401 - stands for the operator
+def _transfers(options: Any) -> list[Transfer]:  # noqa: ANN401 - stands for the operator
     """Make the transfer of the options."""
     return [WearTransfer(wear_settings(options, options.items))]

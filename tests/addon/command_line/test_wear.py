@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import json
+
 import bpy
 from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes
 from hiermatch.hiermatch_addon.command_line.program import main
 
 from tests.addon.garments import add_item
 from tests.addon.rigs import add_armature
+from tests.addon.scenes import QUICK
 
 
 def test_a_wardrobe_is_fitted_and_goes_along_into_another_file(dense_pair, tmp_path, capsys):
@@ -25,6 +28,28 @@ def test_a_wardrobe_is_fitted_and_goes_along_into_another_file(dense_pair, tmp_p
     assert 'no collection called "Drawer"' in capsys.readouterr().err
     assert main(["wear", *arguments, "--collection=Closet", "--wear-result=key"]) == 1
     assert "Write a .blend, or make fitted copies" in capsys.readouterr().err
+
+
+def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dense_pair, tmp_path, capsys):
+    add_item(dense_pair[0], "Shirt", 0.02)
+    library, report = str(tmp_path / "bodies.blend"), tmp_path / "report.json"
+    bpy.data.libraries.write(library, {dense_pair[1]}, fake_user=True)
+    bpy.data.objects.remove(dense_pair[1])
+    with bpy.data.libraries.load(library, link=True) as (_, wanted):
+        wanted.objects = ["Target"]
+    bpy.context.scene.collection.objects.link(wanted.objects[0])
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "pair.blend"))
+    arguments = [f"{tmp_path / 'pair.blend'}:{name}" for name in ("Source", "Target")]
+    arguments += ["--no-refine", "--items=Shirt", f"--output={tmp_path / 'out.blend'}"]
+    arguments += [f"--{name.replace('_', '-')}={value}" for name, value in QUICK.items() if name != "dense"]
+    assert main(["wear", *arguments, "--wear-hide=key"]) == 1
+    assert "is linked from" in capsys.readouterr().err
+    arguments += ["--accept-doubtful", f"--output={tmp_path / 'out.glb'}", f"--map={tmp_path / 'map.npz'}"]
+    assert main(["wear", *arguments, f"--report={report}"]) == 0
+    assert bpy.data.objects["Shirt on Target"]["hiermatch_body"] == "Target"
+    assert 'map.npz" was not written' in capsys.readouterr().err
+    assert (tmp_path / "out.glb").is_file()
+    assert 0 < json.loads(report.read_text())["carried"][0]["confidence"] <= 1
 
 
 def test_items_are_left_out_of_a_source_of_several_objects(dense_pair, tmp_path, capsys):
