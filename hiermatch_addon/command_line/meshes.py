@@ -107,7 +107,7 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
         path = argument.path
         if opened is not None and path.samefile(opened):
             objects = list(view_layer_of(bpy.context).objects)
-            chosen = _named(argument, objects) or (whole and _only_character(argument, objects))
+            chosen = _named(argument, objects, numbered=False) or (whole and _only_character(argument, objects))
             chosen = chosen or _choose([obj for obj in objects if obj.type == "MESH"], argument)
         elif path.suffix.lower() == ".blend":
             chosen = _append(argument, whole=whole)
@@ -125,16 +125,17 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
     return found, notes
 
 
-def _named(argument: MeshArgument, objects: Iterable[bpy.types.Object]) -> Side | None:
-    """Return the character whose armature or collection is named; None if neither has that name.
+def _named(argument: MeshArgument, objects: Sequence[bpy.types.Object], *, numbered: bool) -> Side | None:
+    """Return the character whose armature or collection is named; None if a mesh has that name, or neither has.
 
-    The name of an import that was taken in the scene has got a number.
+    The name of an import that was taken in the scene has got a number, so these may be `numbered`.
     """
-    if not argument.name:
+    if not argument.name or any(obj.type == "MESH" and obj.name == argument.name for obj in objects):
         return None
     view_layer_of(bpy.context).update()
     armatures = [obj for obj in objects if obj.type == "ARMATURE"]
-    for called in ((obj.name for obj in armatures), (obj.name.rpartition(".")[0] for obj in armatures)):
+    bare = [obj.name.rpartition(".")[0] for obj in armatures]
+    for called in ([obj.name for obj in armatures], *([bare] if numbered else [])):
         for obj, name in zip(armatures, called, strict=True):
             if name == argument.name:
                 return side_of(obj, view_layer_of(bpy.context))
@@ -267,9 +268,8 @@ def _chosen_of_import(
     added: Sequence[bpy.types.Object], argument: MeshArgument, notes: list[str], *, whole: bool
 ) -> Side:
     """Return what is named of an import, or the character of the mesh with the most vertices."""
-    exact = any(obj.type == "MESH" and obj.name == argument.name for obj in added)
     bare = None if any(obj.type == "MESH" for obj in added) else _only_character(argument, added)
-    found = None if exact else _named(argument, added) or bare
+    found = _named(argument, added, numbered=True) or bare
     if found is not None:
         return found
     chosen = _choose_largest([obj for obj in added if obj.type == "MESH"], argument, notes)

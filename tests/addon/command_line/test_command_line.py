@@ -465,6 +465,23 @@ def test_a_second_blend_brings_its_rig(folder, tmp_path):
         load_meshes([arguments[0], MeshArgument(tmp_path / "rigged.blend", "Nobody")])
 
 
+@pytest.mark.parametrize("other", ["collection", "armature"])
+def test_a_mesh_of_exactly_that_name_is_meant_first(other, tmp_path):
+    source, rig = add_rigged("Body", resolution=4)
+    parts = split_up(source, lambda centers: centers[:, 0] > 0)
+    parts[0].name = "Hero"
+    if other == "armature":
+        rig.name = "Hero.001"
+    else:
+        held = bpy.data.collections.new("Hero")
+        bpy.context.scene.collection.children.link(held)
+        for part in parts:
+            held.objects.link(part)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hero.blend"))
+    (side,), _ = load_meshes([MeshArgument(tmp_path / "hero.blend", "Hero")])
+    assert side == bpy.data.objects["Hero"]
+
+
 def test_one_file_may_be_named_in_several_ways(folder, tmp_path, monkeypatch):
     monkeypatch.chdir(folder)
     (tmp_path / "link").symlink_to(folder, target_is_directory=True)
