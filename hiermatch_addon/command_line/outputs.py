@@ -127,6 +127,8 @@ def _export(path: Path, *, moving: bool) -> None:
     """Write what is selected into a folder beside the file, and move all that was written to its place."""
     name, options = _EXPORTERS[path.suffix.lower()]
     options = options | (_MOVING[path.suffix.lower()] if moving else {})
+    if path.suffix.lower() == ".gltf":  # its textures are files, which others in the same folder may have as well
+        options["export_texture_dir"] = f"{path.stem} textures"
     if not has_operator(name):
         raise ObjectError(
             f'This Blender cannot write "{path.name}". Enable the add-on that exports {path.suffix} files, or write '
@@ -138,10 +140,12 @@ def _export(path: Path, *, moving: bool) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=path.parent, prefix=".hiermatch-") as folder:
             getattr(getattr(bpy.ops, group), operator)(filepath=str(Path(folder, path.name)), **options)
-            written: Sequence[Path] = sorted(Path(folder).iterdir(), key=lambda one: one.name == path.name)
-            if path.name not in {one.name for one in written}:
+            written = sorted(filter(Path.is_file, Path(folder).rglob("*")), key=lambda one: one.name == path.name)
+            if not Path(folder, path.name).is_file():
                 raise ObjectError(f'"{path}" cannot be written: Blender\'s exporter wrote nothing.')
             for one in written:  # the file itself last: when it is there, all is there
-                one.replace(path.parent / one.name)
+                place = path.parent / one.relative_to(folder)
+                place.parent.mkdir(exist_ok=True)
+                one.replace(place)
     except OSError as error:
         raise ObjectError(f'"{path}" cannot be written: {error.strerror or error}. Choose another place.') from error

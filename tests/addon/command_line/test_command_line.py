@@ -382,6 +382,32 @@ def test_retarget_carries_the_rig_into_another_file(tmp_path):
         assert not [layer for layer in obj.data.color_attributes if layer.name.startswith("HM")]
 
 
+def test_textures_of_two_files_in_one_folder_stay_apart(tmp_path):
+    obj = add_blob("Body")
+    obj.data.uv_layers.new(name="Layout")
+    material = bpy.data.materials.new("Skin")
+    if material.node_tree is None:  # before Blender 5
+        material.use_nodes = True
+    nodes = material.node_tree.nodes
+    texture = nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new("Skin", 4, 4)
+    material.node_tree.links.new(texture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
+    obj.data.materials.append(material)
+    colors = {"first": 0.0, "the second": 1.0}
+    for name, color in colors.items():
+        for _ in range(2):  # over a former one as well
+            texture.image.pixels[:] = [color, color, color, 1.0] * 16
+            texture.image.pack()
+            save(tmp_path / f"{name}.gltf", obj)
+    for name, color in colors.items():
+        (back,), _ = load_meshes([MeshArgument(tmp_path / f"{name}.gltf")])
+        (image,) = (node.image for node in back.data.materials[0].node_tree.nodes if node.type == "TEX_IMAGE")
+        assert image.pixels[0] == pytest.approx(color, abs=0.01)
+    assert {path.name for path in tmp_path.glob("*.*")} == {
+        f"{name}.{end}" for name in colors for end in ("gltf", "bin")
+    }
+
+
 @pytest.mark.parametrize("hidden", ["hide_set", "hide_viewport", "hide_select"])
 def test_what_is_hidden_is_written_all_the_same(hidden, tmp_path):
     source, rig = add_rigged(resolution=4)
