@@ -10,24 +10,19 @@ import signal
 from pathlib import Path
 
 import bpy
-import numpy as np
 import pytest
-from hiermatch.engine import MatchSettings, symmetry_map_steps
 from hiermatch.hiermatch_addon import command_line
-from hiermatch.hiermatch_addon.command_line import console, match, options, reports, symmetry
+from hiermatch.hiermatch_addon.command_line import console, match, options, reports
 from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes, mesh_argument
 from hiermatch.hiermatch_addon.command_line.operator_errors import said_by
 from hiermatch.hiermatch_addon.command_line.outputs import save
 from hiermatch.hiermatch_addon.command_line.program import main
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES
-from hiermatch.hiermatch_addon.scene.armatures import find_armature
-from hiermatch.hiermatch_addon.scene.character import Character
 from hiermatch.hiermatch_addon.storage.match_file import load_match
-from hiermatch.hiermatch_addon.transfers import symmetrise
 
-from tests.addon.rigs import add_rigged, add_rigged_pair, split_up
-from tests.addon.scenes import DENSE, QUICK, add_blob, add_pair
+from tests.addon.rigs import add_rigged_pair
+from tests.addon.scenes import DENSE, QUICK
 
 
 def flags(settings):
@@ -37,24 +32,6 @@ def flags(settings):
         flag = name.replace("_", "-")
         words.append((f"--{flag}" if value else f"--no-{flag}") if isinstance(value, bool) else f"--{flag}={value}")
     return words
-
-
-@pytest.fixture(scope="module")
-def folder(extension, tmp_path_factory):
-    """A folder with a pair as .blend and as .obj."""
-    assert extension
-    folder = tmp_path_factory.mktemp("command line")
-    bpy.ops.wm.read_homefile(use_empty=True)
-    source, target = add_pair()
-    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "pair.blend"))
-    for obj in (source, target):
-        save(folder / f"{obj.name}.obj", obj)
-    return folder
-
-
-@pytest.fixture
-def pair(folder):
-    return [f"{folder / 'pair.blend'}:Source", f"{folder / 'pair.blend'}:Target"]
 
 
 def report_of(path):
@@ -305,55 +282,6 @@ def test_export_and_import(pair, folder, tmp_path):
     assert "HM Map Weights" in bpy.data.objects["Source"].data.attributes
 
 
-def test_symmetry_finds_the_map_and_symmetrises(tmp_path, monkeypatch):
-    quick = MatchSettings(**{name: value for name, value in QUICK.items() if name != "dense"})
-    for module in (symmetry, symmetrise):
-        monkeypatch.setattr(module, "symmetry_map_steps", lambda mesh: symmetry_map_steps(mesh, quick))
-    obj = add_blob("Body")
-    count = len(obj.data.vertices)
-    obj.vertex_groups.new(name="Arm.L").add(range(30), 1.0, "REPLACE")
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "body.blend"))
-    body, report = str(tmp_path / "body.blend"), tmp_path / "report.json"
-    assert main(["symmetry", body, f"--map={tmp_path / 'map.npz'}", f"--report={report}"]) == 0
-    found = load_match(tmp_path / "map.npz")
-    assert found.kind == "symmetry"
-    assert found.counts == (count, count)
-    assert report_of(report)["match"]["quality"]["sentence"]
-    output = tmp_path / "out.blend"
-    assert main(["symmetry", body, f"--output={output}", "--symmetrise-side=left"]) == 0
-    bpy.ops.wm.open_mainfile(filepath=str(output))
-    assert "Arm.R" in bpy.data.objects["Body"].vertex_groups
-    assert main(["import", body, body, str(tmp_path / "map.npz"), f"--output={output}"]) == 1
-
-
-def test_symmetry_tells_of_a_mesh_that_is_hardly_symmetric(tmp_path, monkeypatch, capsys):
-    quick = MatchSettings(**{name: value for name, value in QUICK.items() if name != "dense"})
-    for module in (symmetry, symmetrise):
-        monkeypatch.setattr(module, "symmetry_map_steps", lambda mesh: symmetry_map_steps(mesh, quick))
-    monkeypatch.setattr(symmetrise, "asymmetry_note", lambda name, _: f'"{name}" is hardly symmetric.')
-    add_blob("Body").vertex_groups.new(name="Arm.L").add(range(30), 1.0, "REPLACE")
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "body.blend"))
-    output, report = tmp_path / "out.blend", tmp_path / "report.json"
-    wanted = ["symmetry", str(tmp_path / "body.blend"), f"--output={output}", f"--report={report}"]
-    assert main(wanted) == 0
-    assert '"Body" is hardly symmetric.' in capsys.readouterr().err
-    assert report_of(report)["notes"] == ['"Body" is hardly symmetric.']
-    output.unlink()
-    assert main([*wanted, "--strict", "--least-confidence=1.5"]) == 3
-    assert report_of(report)["doubtful"]
-    assert output.exists()
-
-
-def test_symmetry_is_that_of_one_mesh(tmp_path, capsys):
-    source, rig = add_rigged(resolution=4)
-    whole, *parts = rig.name, *(part.name for part in split_up(source, lambda centers: centers[:, 0] > 0))
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "character.blend"))
-    assert main(["symmetry", f"{tmp_path / 'character.blend'}:{whole}"]) == 1
-    said = capsys.readouterr().err
-    assert f'"{whole}" has several meshes' in said
-    assert all(f'"{part}"' in said for part in parts)
-
-
 @pytest.mark.slow
 def test_retarget_carries_the_rig_into_another_file(tmp_path):
     add_rigged_pair()
@@ -380,188 +308,6 @@ def test_retarget_carries_the_rig_into_another_file(tmp_path):
         assert any(modifier.type == "ARMATURE" for modifier in obj.modifiers)
         assert "upper front.L" in obj.vertex_groups
         assert not [layer for layer in obj.data.color_attributes if layer.name.startswith("HM")]
-
-
-def test_textures_of_two_files_in_one_folder_stay_apart(tmp_path):
-    obj = add_blob("Body")
-    obj.data.uv_layers.new(name="Layout")
-    material = bpy.data.materials.new("Skin")
-    if material.node_tree is None:  # before Blender 5
-        material.use_nodes = True
-    nodes = material.node_tree.nodes
-    texture = nodes.new("ShaderNodeTexImage")
-    texture.image = bpy.data.images.new("Skin", 4, 4)
-    material.node_tree.links.new(texture.outputs["Color"], nodes["Principled BSDF"].inputs["Base Color"])
-    obj.data.materials.append(material)
-    colors = {"first": 0.0, "the second": 1.0}
-    for name, color in colors.items():
-        for _ in range(2):  # over a former one as well
-            texture.image.pixels[:] = [color, color, color, 1.0] * 16
-            texture.image.pack()
-            save(tmp_path / f"{name}.gltf", obj)
-    for name, color in colors.items():
-        (back,), _ = load_meshes([MeshArgument(tmp_path / f"{name}.gltf")])
-        (image,) = (node.image for node in back.data.materials[0].node_tree.nodes if node.type == "TEX_IMAGE")
-        assert image.pixels[0] == pytest.approx(color, abs=0.01)
-    assert {path.name for path in tmp_path.glob("*.*")} == {
-        f"{name}.{end}" for name in colors for end in ("gltf", "bin")
-    }
-
-
-@pytest.mark.parametrize("hidden", ["hide_set", "hide_viewport", "hide_select"])
-def test_what_is_hidden_is_written_all_the_same(hidden, tmp_path):
-    source, rig = add_rigged(resolution=4)
-    for obj in (source, rig):
-        if hidden == "hide_set":
-            obj.hide_set(state=True)
-        else:
-            setattr(obj, hidden, True)
-    save(tmp_path / "hidden.glb", source)
-    (back,), _ = load_meshes([MeshArgument(tmp_path / "hidden.glb")])
-    assert len(back.data.polygons) > 0
-    assert find_armature(back) is not None
-
-
-def test_what_cannot_be_written_because_its_collection_is_hidden_is_told(tmp_path):
-    source, rig = add_rigged(resolution=4)
-    shut = bpy.data.collections.new("Shut")
-    bpy.context.scene.collection.children.link(shut)
-    shut.objects.link(rig)
-    bpy.context.scene.collection.objects.unlink(rig)
-    child = bpy.context.view_layer.layer_collection.children["Shut"]
-    for place, switch in ((shut, "hide_viewport"), (child, "exclude")):
-        setattr(place, switch, True)
-        with pytest.raises(ObjectError, match=f'"{rig.name}" cannot be written while hidden'):
-            save(tmp_path / "hidden.glb", source)
-    assert not (tmp_path / "hidden.glb").exists()
-
-
-@pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "fbx", "glb", "gltf"])
-def test_all_kinds_of_files_come_back(suffix, tmp_path):
-    obj = add_blob("Body")
-    faces, length = len(obj.data.polygons), np.linalg.norm(np.ptp([vertex.co for vertex in obj.data.vertices], axis=0))
-    path = tmp_path / f"Body.{suffix}"
-    save(path, obj)
-    (back,), notes = load_meshes([MeshArgument(path)])
-    assert not notes
-    assert len(back.data.polygons) >= faces  # some kinds know triangles only
-    assert back.dimensions.length == pytest.approx(length, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("text", "path", "name"),
-    [
-        ("a.blend", "a.blend", ""),
-        ("a.blend:Body", "a.blend", "Body"),
-        ("some where/a.b.OBJ:ns:Body.001", "some where/a.b.OBJ", "ns:Body.001"),
-        ("C:/x/a.fbx", "C:/x/a.fbx", ""),
-        ("C:/x/a.fbx:Body.obj", "C:/x/a.fbx", "Body.obj"),
-    ],
-)
-def test_meshes_are_named_by_file_and_object(text, path, name):
-    assert mesh_argument(text) == MeshArgument(Path(path), name)
-
-
-def test_which_mesh_is_meant_must_be_clear(folder, tmp_path):
-    with pytest.raises(ObjectError, match=r'holds 2 meshes.*"Source", "Target"'):
-        load_meshes([MeshArgument(folder / "pair.blend")])
-    with pytest.raises(ObjectError, match='no mesh called "Nobody"'):
-        load_meshes([MeshArgument(folder / "pair.blend", "Nobody")])
-    add_blob("Small", 8, 6)
-    add_blob("Large")
-    bpy.ops.wm.obj_export(filepath=str(tmp_path / "two.obj"))
-    (largest,), notes = load_meshes([MeshArgument(tmp_path / "two.obj")])
-    assert largest.name == "Large"
-    assert 'The largest was taken: "Large"' in notes[0]
-    (small,), notes = load_meshes([MeshArgument(tmp_path / "two.obj", "Small")])
-    assert (small.name, notes) == ("Small", [])
-    (tmp_path / "none.obj").write_text("v 0 0 0\n")
-    with pytest.raises(ObjectError, match="holds no mesh with faces"):
-        load_meshes([MeshArgument(tmp_path / "none.obj")])
-
-
-def test_a_second_blend_brings_its_rig(folder, tmp_path):
-    add_rigged_pair()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "rigged.blend"))
-    arguments = [MeshArgument(folder / "pair.blend", "Source"), MeshArgument(tmp_path / "rigged.blend", "Source")]
-    (plain, rigged), _ = load_meshes(arguments)
-    assert (plain.name, rigged.name) == ("Source", "Source.001")
-    assert rigged.parent.name in bpy.context.view_layer.objects
-    with pytest.raises(ObjectError, match='no object called "Nobody"'):
-        load_meshes([arguments[0], MeshArgument(tmp_path / "rigged.blend", "Nobody")])
-
-
-@pytest.mark.parametrize("other", ["collection", "armature"])
-def test_a_mesh_of_exactly_that_name_is_meant_first(other, tmp_path):
-    source, rig = add_rigged("Body", resolution=4)
-    parts = split_up(source, lambda centers: centers[:, 0] > 0)
-    parts[0].name = "Hero"
-    if other == "armature":
-        rig.name = "Hero.001"
-    else:
-        held = bpy.data.collections.new("Hero")
-        bpy.context.scene.collection.children.link(held)
-        for part in parts:
-            held.objects.link(part)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "hero.blend"))
-    (side,), _ = load_meshes([MeshArgument(tmp_path / "hero.blend", "Hero")])
-    assert side == bpy.data.objects["Hero"]
-
-
-def test_one_file_may_be_named_in_several_ways(folder, tmp_path, monkeypatch):
-    monkeypatch.chdir(folder)
-    (tmp_path / "link").symlink_to(folder, target_is_directory=True)
-    for other in ("pair.blend", tmp_path / "link" / "pair.blend", Path("..", folder.name, "pair.blend")):
-        found, _ = load_meshes([MeshArgument(folder / "pair.blend", "Source"), MeshArgument(Path(other), "Target")])
-        assert [obj.name for obj in found] == ["Source", "Target"]
-    paths = [folder / "Source.obj", Path("..", folder.name, "Source.obj")]
-    (first, second), _ = load_meshes([MeshArgument(path) for path in paths])
-    assert first == second
-
-
-def test_characters_are_named_by_their_armature_or_collection(tmp_path):
-    source, _ = add_rigged(resolution=4)
-    parts = split_up(source, lambda centers: centers[:, 0] > 0)
-    held = bpy.data.collections.new("Held")
-    bpy.context.scene.collection.children.link(held)
-    held.objects.link(parts[0])
-    held.objects.link(parts[1])
-    add_blob("Prop")
-    names = tuple(part.name for part in parts)
-    path = tmp_path / "character.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    (first,), _ = load_meshes([MeshArgument(path, "Source Rig")])
-    assert (first.name, tuple(part.name for part in first.parts)) == ("Source Rig", names)
-    opened = tmp_path / "other.blend"
-    bpy.ops.wm.read_homefile(use_empty=True)
-    add_blob("Body")
-    bpy.ops.wm.save_as_mainfile(filepath=str(opened))
-    for name in ("Source Rig", "Held"):
-        (_, second), _ = load_meshes([MeshArgument(opened), MeshArgument(path, name)])
-        assert (second.name, tuple(part.name for part in second.parts)) == (name, names)
-        assert find_armature(second).name == "Source Rig"
-        assert "Prop" not in bpy.data.objects
-
-
-def test_an_import_of_a_character_is_taken_as_a_whole(tmp_path):
-    source, _ = add_rigged(resolution=4)
-    parts = split_up(source, lambda centers: centers[:, 0] > 0)
-    save(tmp_path / "character.glb", Character("Hero", tuple(parts)))
-    (side,), notes = load_meshes([MeshArgument(tmp_path / "character.glb")])
-    assert len(side.parts) == 2
-    assert "holds a character of 2 meshes" in notes[0]
-    (one,), _ = load_meshes([MeshArgument(tmp_path / "character.glb")], whole=False)
-    assert one in bpy.context.view_layer.objects.values()
-
-
-def test_what_an_importer_shows_bones_by_is_no_mesh_of_the_file(tmp_path):
-    source, _ = add_rigged(resolution=4)
-    save(tmp_path / "one.glb", source)
-    (side,), notes = load_meshes([MeshArgument(tmp_path / "one.glb")])
-    assert side.name == "Source"
-    assert not notes
-    with pytest.raises(ObjectError, match=r'no mesh called "Head". It has "Source"\.$'):
-        load_meshes([MeshArgument(tmp_path / "one.glb", "Head")])
 
 
 def test_every_option_of_the_operators_is_there():
