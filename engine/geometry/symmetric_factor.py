@@ -15,8 +15,8 @@ def symmetric_factor(matrix: sparray, *, ordered: bool = False) -> SuperLU:
     matrix : (n, n) sparse array of float
         Symmetric.  If it is positive definite it needs no pivoting: the order of elimination stays the one that fills
         in least.  For the Laplacian of a sphere of thirty thousand vertices in random order it takes six tenths of the
-        time that the defaults take, with two thirds of the entries.  One that is not is factored without pivoting, too,
-        and whether that is accurate is for the caller to find out.
+        time that the defaults take, with two thirds of the entries (tried once).  One that is not is factored without
+        pivoting, too, and whether that is accurate is for the caller to find out.
     ordered : bool
         Whether its rows are in the order of elimination already.
 

@@ -7,7 +7,7 @@ about forty points it begins to take long to prove the optimum.
 
 from __future__ import annotations
 
-_PAIRS = 5000  # of a point and a candidate: what an exact search takes
+from ..exact.branch_and_bound import LARGEST
 
 
 def flat_candidates(points: int, samples: int) -> int:
@@ -15,4 +15,4 @@ def flat_candidates(points: int, samples: int) -> int:
 
     Never less than the points, which have to find room.
     """
-    return min(samples, max(points, min(2 * points, _PAIRS // points)))
+    return min(samples, max(points, min(2 * points, LARGEST // points)))

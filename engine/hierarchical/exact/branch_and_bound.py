@@ -19,7 +19,7 @@ from .exclusion import Exclusion
 from .incumbent import Incumbent
 from .local_search import beam_search
 
-_LARGEST = 5000  # pairs of a point and a candidate; their square in float64 is 200 MB
+LARGEST = 5000  # pairs of a point and a candidate; their square in float64 is 200 MB
 _BEAM = 60
 _ROOT_SWEEPS = 60
 _NODE_SWEEPS = 20
@@ -101,9 +101,9 @@ def branch_and_bound_steps(
     pairs of pairs, (n m)^2 numbers.
     """
     n, m = problem.size
-    if n * m > _LARGEST:
+    if n * m > LARGEST:
         raise MatchError(
-            f"{n} points and {m} candidates are too many for an exact search ({n * m} pairs, at most {_LARGEST}): "
+            f"{n} points and {m} candidates are too many for an exact search ({n * m} pairs, at most {LARGEST}): "
             "use fewer points or candidates."
         )
     feasible = _feasible_matchings(problem, exclusions)
