@@ -209,7 +209,9 @@ class MatchSettings(CheckedSettings):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.solver != "flat" and self.coarse_candidates < self.coarse_points:  # flat has no coarse points
+        # The flat solver has no coarse points, and a bijective match as many candidates as points.
+        offered = self.solver != "flat" and self.constraint != "bijective"
+        if offered and self.coarse_candidates < self.coarse_points:
             raise SettingsError(
                 f"{self.coarse_points} Coarse Points need at least as many Coarse Candidates, "
                 f"not {self.coarse_candidates}."

@@ -207,7 +207,8 @@ def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int], wanted: lis
         return []
     pair = hypotheses[0].coarse.pair
     mirror = Pair(pair.source, pair.source, pair.settings)
-    problem = mirror.problem(sizes[0], min(pair.settings.coarse_candidates, len(hypotheses[0].assignment)))
+    offered = min(pair.settings.coarse_candidates, len(hypotheses[0].assignment))
+    problem = mirror.problem(sizes[0], max(sizes[0], offered))
     # The best self-matching is the identity.
     selves = yield from distinct_matchings_steps(
         problem, 1 + _SYMMETRIES, _DISTINCT, node_limit=pair.settings.node_limit

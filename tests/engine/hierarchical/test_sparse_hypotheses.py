@@ -49,6 +49,13 @@ def test_only_the_ratio_of_the_weights_matters(shapes):
         np.testing.assert_array_equal(first.assignment, second.assignment)
 
 
+def test_mirrored_answers_of_a_bijective_match_need_no_more_candidates(shapes):
+    few = replace(SPARSE, constraint="bijective", coarse_candidates=3)
+    keeping, mirroring = run(choose_steps(run(coarse_steps(Pair(*shapes, few)))[:1]))
+    assert keeping.orientation > 0.3
+    assert mirroring.orientation < -0.3
+
+
 @pytest.mark.parametrize("followed", [1, 3])
 @pytest.mark.parametrize("dense", [False, True])
 def test_the_better_answer_of_either_orientation_is_chosen(shapes, dense, followed):
