@@ -91,7 +91,7 @@ def solve_steps(pair: Pair, lap: Callable[[str], None]) -> Steps[list[Answer]]:
     if pair.settings.solver == "gmds":
         answers = yield from within(in_turn(map(_gmds_steps, hypotheses)), 0.6, 1.0)
         lap("gmds")
-        return answers
+        return _of_either_orientation(answers)
     answers = yield from within(_finished_steps(hypotheses), 0.6, 0.8)
     lap("hierarchy")
     if pair.settings.settle and not pair.settings.dense:
@@ -134,8 +134,15 @@ def _gmds_steps(hypothesis: Hypothesis) -> Steps[Answer]:
     placed, distances = target.surface.on_mesh(found.target_points), found.distances
     if pair.landmarks:
         placed, distances = yield from _at_landmarks_steps(pair, placed)
-    linear = _linear(pair, placed)
-    return Answer(coarse, coarse_candidates(pair), hypothesis.orientation, placed, distances, linear, levels)
+    orientation = assess(coarse, [Refined(_nearest_samples(pair, placed), 0)]).orientation
+    return Answer(coarse, coarse_candidates(pair), orientation, placed, distances, _linear(pair, placed), levels)
+
+
+def _of_either_orientation(answers: list[Answer]) -> list[Answer]:
+    """Keep the answer of the least distortion of either orientation, the one that keeps it first."""
+    ranked = sorted(answers, key=lambda answer: answer.distortion)
+    keeping = [answer for answer in ranked if answer.orientation > 0][:1]
+    return keeping + [answer for answer in ranked if answer.orientation <= 0][:1]
 
 
 def _at_landmarks_steps(pair: Pair, points: SurfacePoints) -> Steps[tuple[SurfacePoints, Floats]]:
@@ -207,5 +214,9 @@ def _holding(pair: Pair, count: int) -> Floats:
 
 def _linear(pair: Pair, points: SurfacePoints) -> float:
     """Sum the descriptor differences, at the sample of the target nearest to each point."""
-    nearest = pair.target.samples.rows[:, points.nearest_vertices].argmin(axis=0)
-    return float(pair.linear[np.arange(len(points)), nearest].sum())
+    return float(pair.linear[np.arange(len(points)), _nearest_samples(pair, points)].sum())
+
+
+def _nearest_samples(pair: Pair, points: SurfacePoints) -> Ints:
+    """Find the sample of the target nearest to each point, (k,)."""
+    return pair.target.samples.rows[:, points.nearest_vertices].argmin(axis=0)

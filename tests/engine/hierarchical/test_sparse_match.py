@@ -88,6 +88,18 @@ def test_settling_lowers_the_distortion(shapes, answers):
     assert (settled[0].points.barycentric.max(axis=1) < 0.999).any()
 
 
+def test_gmds_that_turns_a_matching_over_is_told_by_its_orientation():
+    bodies = [Shape(TriangleMesh(*creature(pose, 8)[:2])) for pose in (1.2, 0.0)]
+    for shape in bodies:
+        run(shape.sample_steps(SETTINGS.samples))
+    pair = Pair(*bodies, replace(SETTINGS, solver="gmds", coarse_points=3))
+    found, _ = solved(pair)
+    for answer in found:
+        nearest = pair.target.samples.rows[:, answer.points.nearest_vertices].argmin(axis=0)
+        assert np.sign(answer.orientation) == np.sign(pair.orientation(nearest))
+    assert [np.sign(answer.orientation) for answer in found] in ([1], [-1], [1, -1])
+
+
 @pytest.mark.parametrize("solver", ["hierarchical", "gmds"])
 def test_landmarks_stay_with_their_partners(shapes, solver):
     vertices = [shape.samples.vertices[[20, 30]] for shape in shapes]
