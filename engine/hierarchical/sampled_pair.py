@@ -81,6 +81,8 @@ class Pair:
         """Compare the samples by a descriptor; in place of eigenfunctions, by histograms, which need no signs."""
         if descriptor in ("heat_kernel", "wave_kernel"):
             return _scaled(_signature_difference(*self._signatures(descriptor)))
+        if descriptor not in ("histogram", "eigenfunctions"):
+            raise NotImplementedError(f"The descriptor {descriptor!r} is not compared here yet.")
         bins, reach = self.settings.histogram_bins, max(self.source_distances.max(), self.target_distances.max())
         first = distance_histograms(self.source_distances, self.source.samples.cell_areas, bins, reach)
         second = distance_histograms(self.target_distances, self.target.samples.cell_areas, bins, reach)

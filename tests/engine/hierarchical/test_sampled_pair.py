@@ -156,6 +156,13 @@ def test_the_orientation_counts_as_much_beside_small_weights(shapes):
     )
 
 
+def test_a_descriptor_that_is_not_compared_yet_does_not_pass_for_histograms(shapes):
+    settings = replace(PLAIN)
+    object.__setattr__(settings, "descriptor", "torsion")
+    with pytest.raises(NotImplementedError, match="torsion"):
+        Pair(*shapes, settings)
+
+
 def test_only_eigenfunctions_have_signs_to_choose(shapes):
     pair = Pair(*shapes, PLAIN)
     assert pair.variants(5) == [pair]
