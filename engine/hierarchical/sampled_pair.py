@@ -10,13 +10,14 @@ from scipy.spatial.distance import cdist
 
 from ..geometry.orientation import orientation_agreement, signed_areas
 from ..runtime.arrays import TINY, Bools, Floats, Ints, squared_differences
+from ..runtime.progress import Steps
 from ..shapes.shape import Shape
 from ..shapes.surface_distances import EmbeddedDistances, PointDistances, SurfaceDistances
 from .descriptors import distance_histograms, earth_movers_distance
 from .diffusion import automatic_time, diffusion_places, positive_values
 from .problem import MatchingProblem
 from .settings import MatchSettings
-from .sign_sequences import SignSequence, consistent_sequences
+from .sign_sequences import SignSequence, consistent_sequences_steps
 from .spectral_descriptors import (
     automatic_energies,
     eigenfunction_descriptor,
@@ -101,13 +102,18 @@ class Pair:
         shapes = self.source, self.target
         return [of[shape.samples.vertices] for of, shape in zip(signatures, shapes, strict=True)]
 
-    def variants(self, count: int) -> list[Pair]:
-        """Return the pair, or for eigenfunctions the pair with each of the most consistent sign sequences.
+    def variants_steps(self, count: int) -> Steps[list[Pair]]:
+        """Find the pair with each of the most consistent sign sequences of eigenfunctions.
 
         Parameters
         ----------
         count : int
             How many, at most.
+
+        Returns
+        -------
+        list of Pair
+            For any other descriptor the pair alone.
         """
         if self.settings.descriptor != "eigenfunctions":
             return [self]
@@ -115,7 +121,8 @@ class Pair:
         source, target = (
             eigenfunction_descriptor(s.spectrum, k)[s.samples.vertices] for s in (self.source, self.target)
         )
-        sequences = consistent_sequences(source, target, self._descriptor, self._groups(k), count)
+        groups = self._groups(k)
+        sequences = yield from consistent_sequences_steps(source, target, self._descriptor, groups, count)
         return [self._with(source, target, sequence) for sequence in sequences]
 
     def _groups(self, count: int) -> list[list[int]]:

@@ -10,6 +10,7 @@ from itertools import permutations, product
 import numpy as np
 
 from ..runtime.arrays import Floats, Ints
+from ..runtime.progress import Progress, Steps
 
 _CLUSTER = 12  # candidates that look most alike, among which a point's true and mirrored images should be
 _PLACES = 200  # so many points vote
@@ -39,9 +40,9 @@ class SignSequence:
         return functions[:, self.order] * self.signs
 
 
-def consistent_sequences(
+def consistent_sequences_steps(
     source: Floats, target: Floats, difference: Floats, groups: Sequence[Sequence[int]], count: int
-) -> list[SignSequence]:
+) -> Steps[list[SignSequence]]:
     r"""Find the sign sequences for which the eigenfunctions of two shapes agree best.
 
     An eigenfunction is known up to its sign, and functions of nearly equal eigenvalues may change places.  Points that
@@ -68,6 +69,11 @@ def consistent_sequences(
     count : int
         How many sequences to return, at most.
 
+    Yields
+    ------
+    Progress
+        Before each order of the functions.
+
     Returns
     -------
     list of SignSequence
@@ -85,7 +91,10 @@ def consistent_sequences(
     mine = source[voters]  # (v, k)
     signs = np.array(list(product((1, -1), repeat=k)))  # (2^k, k)
     orders = np.array(_orders(k, groups))  # (o, k)
-    disagreements = np.array([_disagreements(mine, target[:, order][cluster], signs) for order in orders])  # (o, 2^k)
+    disagreements = np.empty((len(orders), len(signs)))
+    for number, order in enumerate(orders):
+        yield Progress(number / len(orders), "Comparing matchings")
+        disagreements[number] = _disagreements(mine, target[:, order][cluster], signs)
     best = np.unravel_index(np.argsort(disagreements, axis=None, kind="stable")[:count], disagreements.shape)
     return [SignSequence(orders[i], signs[j], float(disagreements[i, j])) for i, j in zip(*best, strict=True)]
 

@@ -118,7 +118,7 @@ def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
     points = min(settings.coarse_points, settings.points)
     candidates = coarse_candidates(pair)
     count = -(-settings.hypotheses // _DENSE_SHARE) if settings.dense else settings.hypotheses
-    variants = pair.variants(count)
+    variants = yield from within(pair.variants_steps(count), 0.0, 0.0)
     problems = [variant.problem(points, candidates) for variant in variants]
     turns = [number % len(variants) for number in range(count)]
     found = yield from matchings_of_each_steps([problems[turn] for turn in turns], _DISTINCT, settings.node_limit)

@@ -112,7 +112,7 @@ def _finished_steps(hypotheses: list[Hypothesis]) -> Steps[list[Answer]]:
 def _flat_steps(pair: Pair) -> Steps[list[Answer]]:
     settings = pair.settings
     candidates = flat_candidates(settings.points, len(pair.target.samples))
-    variants = pair.variants(2)
+    variants = yield from within(pair.variants_steps(2), 0.0, 0.0)
     search = partial(distinct_matchings_steps, node_limit=settings.node_limit)
     found = yield from in_turn(search(variant.problem(settings.points, candidates)) for variant in variants)
     hypotheses = [

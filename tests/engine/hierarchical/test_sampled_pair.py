@@ -165,12 +165,12 @@ def test_a_descriptor_that_is_not_compared_yet_does_not_pass_for_histograms(shap
 
 def test_only_eigenfunctions_have_signs_to_choose(shapes):
     pair = Pair(*shapes, PLAIN)
-    assert pair.variants(5) == [pair]
+    assert run(pair.variants_steps(5)) == [pair]
 
 
 def test_of_the_signs_of_eigenfunctions_those_that_make_a_shape_itself_come_first(shapes):
     pair = Pair(shapes[0], shapes[0], replace(PLAIN, descriptor="eigenfunctions"))
-    variants = pair.variants(4)
+    variants = run(pair.variants_steps(4))
     assert 1 < len(variants) <= 4
     differences = [np.diag(variant.linear).mean() for variant in variants]
     assert differences[0] == pytest.approx(0, abs=1e-6)

@@ -6,7 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from engine.hierarchical.sign_sequences import consistent_sequences
+from engine.hierarchical.sign_sequences import consistent_sequences_steps
+from engine.runtime.progress import at_once
+
+consistent_sequences = at_once(consistent_sequences_steps)
 
 
 @given(st.integers(0, 10_000))
@@ -43,6 +46,16 @@ def test_no_more_than_asked_for_in_order():
     values = [sequence.disagreement for sequence in found]
     assert len(found) == 10
     assert values == sorted(values)
+
+
+def test_it_can_be_stopped_between_two_orders():
+    rng = np.random.default_rng(0)
+    steps = consistent_sequences_steps(
+        rng.random((20, 6)), rng.random((25, 6)), rng.random((20, 25)), [[0, 1, 2], [3, 4, 5]], 5
+    )
+    fractions = [progress.fraction for progress in steps]
+    assert len(fractions) == 36
+    assert fractions == sorted(fractions)
 
 
 def test_only_what_is_asked_for_is_kept_of_a_hundred_thousand_sequences():

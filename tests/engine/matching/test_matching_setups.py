@@ -53,7 +53,7 @@ def test_the_linear_term_is_scaled_by_its_weight(bodies):
 
 def test_descriptors_without_a_unit_have_one_typical_size(bodies):
     means = [
-        prepared(bodies, descriptor=name).variants(1)[0].linear.mean()
+        run(prepared(bodies, descriptor=name).variants_steps(1))[0].linear.mean()
         for name in ("heat_kernel", "wave_kernel", "eigenfunctions")
     ]
     np.testing.assert_allclose(means, means[0])
@@ -68,8 +68,8 @@ def test_diffusion_distances_are_those_of_the_time_given(bodies):
 
 
 def test_eigenfunctions_give_a_variant_per_sign_sequence(bodies):
-    assert len(prepared(bodies).variants(4)) == 1
-    variants = prepared(bodies, descriptor="eigenfunctions").variants(4)
+    assert len(run(prepared(bodies).variants_steps(4))) == 1
+    variants = run(prepared(bodies, descriptor="eigenfunctions").variants_steps(4))
     assert len(variants) == 4
     assert not np.allclose(variants[0].linear, variants[1].linear)
 
