@@ -89,6 +89,8 @@ class Background:
             self.is_waiting = False
             if not task.is_over:
                 helper.end()
+        if not task.done and helper.has_left:  # in the very moment in which it was asked
+            return (yield from self.steps(function, here, args, given))
         return _result(task)
 
     def _ready_steps(self) -> Steps[Helper | None]:

@@ -24,7 +24,7 @@ import scipy
 from .messages import PACKAGE, SentObjects, unpack
 from .pipes import Inbox, has_more, send, sent_in_parts
 from .progress import Progress, Steps
-from .worker_main import READY
+from .worker_main import LEFT, READY
 
 _VARIABLE = "HIERMATCH_PROCESSES"
 """Environment variable that says how many processes may be at work, this one counted."""
@@ -50,7 +50,7 @@ _NAME = "engine"
 
 _BEGIN = (
     f"import sys, types; package = sys.modules['{_NAME}'] = types.ModuleType('{_NAME}'); "
-    f"package.__path__ = sys.argv[1:]; from {_NAME}.runtime.worker_main import serve; serve({{idle}})"
+    f"package.__path__ = sys.argv[1:]; from {_NAME}.runtime.worker_main import serve; sys.exit(serve({{idle}}))"
 )
 """What a helper runs.  To import all of the package would take it several times as long: modules wait until used."""
 
@@ -123,6 +123,11 @@ class Helper:
     def is_over(self) -> bool:
         """Whether the process has ended."""
         return self._process.poll() is not None
+
+    @property
+    def has_left(self) -> bool:
+        """Whether the process has ended by itself, as one does of which nothing is asked for long."""
+        return self._process.poll() == LEFT
 
     @property
     def is_ready(self) -> bool:

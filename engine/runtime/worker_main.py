@@ -20,14 +20,18 @@ from .progress import Preview, Progress, Steps, run, told
 READY = b"A helper of HierMatch is ready.\n"
 """What is written before the first reply."""
 
+LEFT = 75
+"""Exit code of a process of which nothing was asked for long: none of those (1, 2, 3) with which Python or its C
+library end when something is wrong."""
+
 _TOLD = 0.05
 """Least time in seconds between two messages that say how far the work is."""
 
 Result = TypeVar("Result")
 
 
-def serve(idle: float) -> None:
-    """Carry out one order after the other until the other side is gone, or wants nothing for long.
+def serve(idle: float) -> int:
+    """Carry out one order after the other until the other side is gone, or wants nothing for long, and return the code.
 
     An order is a message with two lists of numbers, what to forget and what comes new, and whether it is followed: then
     its progress is told on the way.  There follow one message for each that is new, and one with a function, what all
@@ -50,7 +54,8 @@ def serve(idle: float) -> None:
             fresh = dict(zip(new, messages, strict=False))
             send(replies, _reply(package, known, fresh, messages[-1], _Work(orders, replies if is_followed else None)))
     except (EOFError, OSError):
-        return
+        return 0
+    return LEFT
 
 
 class _Work:

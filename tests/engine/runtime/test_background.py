@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, TriangleMesh, match_steps, run
+from engine.runtime import worker
 from engine.runtime.background import Background, called_steps
 from engine.runtime.errors import HierMatchError
-from engine.runtime.worker import call_background, close_helpers, use_processes
+from engine.runtime.worker import Helper, call_background, close_helpers, use_processes
 from tests import shared_work
 from tests.shapes import creature, icosphere
 
@@ -84,6 +85,25 @@ def test_a_process_that_ends_is_said_in_a_sentence_and_replaced():
         driven(shared_work.ended_steps(), Background())
     assert driven(shared_work.echoed_steps(3), Background())[1] == 3
     assert call_background().pid != before
+
+
+def test_a_process_that_leaves_as_it_is_asked_is_replaced_at_once(monkeypatch):
+    close_helpers()
+    monkeypatch.setattr(worker, "_LONG_IDLE", 0.5)
+    asked, waited = Helper.start_followed, []
+
+    def asked_late(helper, *order):
+        end = time.monotonic() + PATIENCE
+        while not waited and not is_gone(helper.pid):
+            assert time.monotonic() < end
+            time.sleep(0.005)
+        waited.append(helper.pid)
+        return asked(helper, *order)
+
+    monkeypatch.setattr(Helper, "start_followed", asked_late)
+    assert driven(shared_work.echoed_steps(3), Background())[1] == 3
+    assert len(set(waited)) == 2
+    close_helpers()
 
 
 def test_closing_ends_the_process_at_once():
