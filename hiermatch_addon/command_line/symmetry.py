@@ -30,7 +30,7 @@ from .reports import add_report_options, run_reported
 if TYPE_CHECKING:
     import argparse
 
-    from ...engine import DenseMatch, TriangleMesh
+    from ...engine import DenseMatch
     from .command import ExitCode
     from .console import Console
     from .reports import Report
@@ -43,8 +43,8 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
     parser = commands.add_parser(
         "symmetry",
         help="find the left-right map of a mesh, and make what it carries symmetric",
-        description="Match a mesh with its own mirror image, in any pose.  With --output, what it carries is made "
-        "symmetric and written; with --map or without both, its left-right map is found and judged.",
+        description="Match a mesh with its own mirror image, in any pose, and judge this left-right map.  With --map "
+        "it is written; with --output, what the mesh carries is made symmetric and written.",
         usage="%(prog)s MESH [--output FILE] [--map FILE] [options]",
         epilog=EXIT_CODES,
     )
@@ -75,10 +75,11 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         if parsed.output:
             settings = symmetrise_settings(chosen_options("symmetrise", given_options("symmetrise", parsed)))
             job = SymmetriseJob(context, obj, settings)
-        if parsed.map is not None or parsed.strict or job is None:
-            _find_map(parsed, report, obj, console)
-        if job is not None:
+        if job is None:
+            _tell_map(parsed, report, obj, _found(obj, console))
+        else:
             drive(job, context, console)
+            _tell_map(parsed, report, obj, job.found)
             made = job.finish(context)
             report.carried.append({"target": obj.name, "done": [made.done]})
             report.add_notes(made.notes)
@@ -87,10 +88,8 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
     return run_reported(parsed, [parsed.mesh.path], console, work)
 
 
-def _find_map(parsed: argparse.Namespace, report: Report, obj: bpy.types.Object, console: Console) -> None:
-    """Find the left-right map, describe it, and write it if that is wanted."""
-    mesh = read_mesh(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False)
-    found = _driven(mesh, console)
+def _tell_map(parsed: argparse.Namespace, report: Report, obj: bpy.types.Object, found: DenseMatch) -> None:
+    """Describe the left-right map, and write it if that is wanted."""
     quality = Quality.of(found.quality)
     report.match = {"points": 0, "orientation": quality.orientation, "quality": dict(vars(quality))}
     if parsed.map is not None:
@@ -98,8 +97,9 @@ def _find_map(parsed: argparse.Namespace, report: Report, obj: bpy.types.Object,
         report.written.append(str(parsed.map.absolute()))
 
 
-def _driven(mesh: TriangleMesh, console: Console) -> DenseMatch:
-    steps = symmetry_map_steps(mesh)
+def _found(obj: bpy.types.Object, console: Console) -> DenseMatch:
+    """Find the left-right map."""
+    steps = symmetry_map_steps(read_mesh(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False))
     while True:
         try:
             now = next(steps)

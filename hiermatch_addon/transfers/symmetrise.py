@@ -63,6 +63,8 @@ class SymmetriseJob(SteppedJob):
         How far the work is.
     seconds : float
         How long it took, once finished.
+    found : DenseMatch
+        The left-right map, once all is computed.
 
     Raises
     ------
@@ -113,10 +115,10 @@ class SymmetriseJob(SteppedJob):
 
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
-        found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
-        self._note = asymmetry_note(self._name, found.quality)
+        self.found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
+        self._note = asymmetry_note(self._name, self.found.quality)
         yield Progress(0.9, "Telling the sides apart")
-        telling = called_steps(Symmetriser.of, self._mesh, found.source_to_target, self._hints)
+        telling = called_steps(Symmetriser.of, self._mesh, self.found.source_to_target, self._hints)
         symmetriser = yield from within(telling, 0.9, 0.95)
         yield Progress(0.95, "Mirroring")
         for part in self._parts:

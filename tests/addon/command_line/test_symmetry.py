@@ -45,6 +45,24 @@ def test_the_map_is_found_and_both_sides_made_alike(tmp_path):
 
 
 @pytest.mark.usefixtures("quickly")
+def test_the_map_is_found_once_for_all_that_is_asked(tmp_path, monkeypatch):
+    asked = []
+    for module in (symmetry, symmetrise):
+        steps = module.symmetry_map_steps
+        monkeypatch.setattr(module, "symmetry_map_steps", lambda mesh, steps=steps: asked.append(mesh) or steps(mesh))
+    add_blob("Body").vertex_groups.new(name="Arm.L").add(range(30), 1.0, "REPLACE")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "body.blend"))
+    body, report = tmp_path / "body.blend", tmp_path / "report.json"
+    wanted = ["symmetry", str(body), f"--output={tmp_path / 'out.blend'}", f"--map={tmp_path / 'map.npz'}"]
+    assert main([*wanted, f"--report={report}", "--strict"]) in (0, 3)
+    assert len(asked) == 1
+    said = json.loads(report.read_text())
+    assert said["match"]["quality"]["sentence"]
+    assert said["carried"][0]["done"]
+    assert load_match(tmp_path / "map.npz").kind == "symmetry"
+
+
+@pytest.mark.usefixtures("quickly")
 def test_symmetry_tells_of_a_mesh_that_is_hardly_symmetric(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(symmetrise, "asymmetry_note", lambda name, _: f'"{name}" is hardly symmetric.')
     add_blob("Body").vertex_groups.new(name="Arm.L").add(range(30), 1.0, "REPLACE")
