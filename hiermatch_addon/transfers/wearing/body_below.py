@@ -117,6 +117,9 @@ def _uncover(part: bpy.types.Object, *, kept: str) -> None:
     mask = part.modifiers.get(COVERED)
     if kept != "MASK" and mask is not None and mask.type == "MASK":
         part.modifiers.remove(mask)
+        group = part.vertex_groups.get(COVERED)
+        if group is not None and not any(getattr(one, "vertex_group", "") == COVERED for one in part.modifiers):
+            part.vertex_groups.remove(group)
     keys = keys_of(part)
     drawn = None if keys is None else keys.key_blocks.get(COVERED)
     if kept != "KEY" and drawn is not None:

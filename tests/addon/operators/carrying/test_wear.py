@@ -258,7 +258,18 @@ def test_the_body_below_is_drawn_in_or_hidden(dressed_pair):
     assert {"Distance to Skin", "Pushed", "Uncertain"} <= set(fitted("Shirt").data.attributes.keys())
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
     assert "Below Clothes" not in target.modifiers
+    assert "Below Clothes" not in target.vertex_groups
     assert target.data.shape_keys.key_blocks["Below Clothes"].value == 1
+
+
+def test_the_group_of_what_was_hidden_below_clothes_stays_if_a_modifier_of_the_user_needs_it(dressed_pair):
+    _, target, *_ = dressed_pair
+    assert wear("Shirt", wear_hide="MASK") == {"FINISHED"}
+    target.modifiers.new("Own", "SMOOTH").vertex_group = "Below Clothes"
+    assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
+    assert "Below Clothes" not in target.modifiers
+    assert target.modifiers["Own"].vertex_group == "Below Clothes"
+    assert weights_of(target)["Below Clothes"]
 
 
 def keep_half(item, sign):
