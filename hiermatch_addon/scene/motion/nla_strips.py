@@ -44,11 +44,13 @@ def strip_actions(source: bpy.types.Object) -> list[str]:
 def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> None:
     """Put actions, and the one that is played, on tracks of their own, which are called as they are.
 
-    Those on a track already stay where they are.
+    Those on a track already stay where they are; none is silenced by another track.
     """
     animation: Any = rig.animation_data or rig.animation_data_create()
     played, there = animation.action, strip_actions(rig)
-    animation.action = None
+    animation.action, animation.use_nla = None, True
+    for track in animation.nla_tracks:
+        track.is_solo = False
     for action in dict.fromkeys([*([played] if played is not None else []), *actions]):
         if action.name in there:
             continue

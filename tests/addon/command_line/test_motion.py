@@ -6,8 +6,10 @@ from __future__ import annotations
 import json
 
 import bpy
+import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.command_line.program import main
+from hiermatch.hiermatch_addon.scene.motion.action_curves import every_curve
 
 from tests.addon.characters import add_action, add_person, match_at_once
 
@@ -60,6 +62,38 @@ def test_what_is_carried_again_in_its_place_is_a_clip_again(folder):
     assert main([*arguments, f"--output={folder / 'both.blend'}"]) == 0
     assert main([*arguments, f"--output={folder / 'out.glb'}"]) == 0
     assert clips_of(folder / "out.glb")[0] == {"Walk B", "Walk Fast B"}
+
+
+def moving_clips(path):
+    """Names of the clips in an .fbx whose bones move."""
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.import_scene.fbx(filepath=str(path))
+    moving = (
+        action.name
+        for action in bpy.data.actions
+        if any(np.ptp([key.co[1] for key in curve.keyframe_points]) > 0.01 for curve in every_curve(action))
+    )
+    return {name.rpartition("|")[2] for name in moving}
+
+
+@pytest.mark.parametrize("how", ["solo", "off"])
+def test_clips_move_whatever_the_nla_editor_of_the_target_silences(folder, how):
+    both = folder / "both.blend"
+    bpy.ops.wm.open_mainfile(filepath=str(both))
+    rig = bpy.data.objects["B"]
+    rig.pose.bones[-1].keyframe_insert("location", frame=1)
+    idle, rig.animation_data.action = rig.animation_data.action, None
+    track = rig.animation_data.nla_tracks.new()
+    track.strips.new("Idle", 1, idle)
+    track.is_solo, rig.animation_data.use_nla = how == "solo", how != "off"
+    bpy.ops.wm.save_as_mainfile(filepath=str(both))
+    arguments = ["motion", f"{both}:A", f"{both}:B", "--action=Walk*"]
+    assert main([*arguments, f"--output={folder / 'out.fbx'}", f"--output={folder / 'out.blend'}"]) == 0
+    assert {"Walk B", "Walk Fast B"} <= moving_clips(folder / "out.fbx")
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "out.blend"))
+    animation = bpy.data.objects["B"].animation_data
+    assert [(track.is_solo, track.name) for track in animation.nla_tracks] == [(how == "solo", "NlaTrack")]
+    assert animation.use_nla == (how != "off")
 
 
 def test_files_of_one_character_each_need_no_names_and_the_action_is_played(folder):
