@@ -128,7 +128,7 @@ def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None: 
     row.operator("hiermatch.import_bone_pairs", text="", icon="IMPORT")
     row.operator("hiermatch.clear_bone_pairs", text="", icon="TRASH")
     row.separator()
-    row.operator_menu_enum("hiermatch.rename_bones", "names", text="Rename Bones", icon="SORTALPHA")
+    row.operator("hiermatch.rename_bones", icon="SORTALPHA")
     button = draw_starter(
         layout, context, "hiermatch.transfer_paired_weights", "Weights to Own Rig", "MOD_VERTEX_WEIGHT"
     )

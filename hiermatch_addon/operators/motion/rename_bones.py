@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
 from ....engine import HierMatchError
+from ...common.access import layout_of, window_manager_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.translated_text import translated
@@ -81,6 +82,19 @@ class HIERMATCH_OT_rename_bones(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode and Pose Mode, when nothing else is running."""
         return can_start(cls, context, posing=True)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[OperatorReturnItems]:
+        """Ask for the names, and by what the bones are known: after a refusal there would be nothing to adjust."""
+        return window_manager_of(context).invoke_props_dialog(cast("Any", self))
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw what matters, as it is asked and when the operation is adjusted."""
+        layout: Any = layout_of(self)
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(self, "names")
+        if self.names != "SOURCE":
+            layout.prop(self, "known")
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Rename, and report."""

@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.operators.motion.rename_bones import HIERMATCH_OT_rename_bones
 from hiermatch.hiermatch_addon.transfers.motion.name_tables import NAME_TABLES
 
 from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices
+from tests.addon.panels.test_panels import Layout
 from tests.addon.scenes import weights_of
 
 rename = bpy.ops.hiermatch.rename_bones
@@ -152,6 +156,18 @@ def test_groups_that_blender_would_rename_are_looked_at_however_a_mesh_is_held(h
     body.vertex_groups.remove(body.vertex_groups["upperarm_l"])
     assert rename(target="B", names="UNREAL") == {"FINISHED"}
     assert weights_of(body)["upperarm_l"] == before[1]["upper_arm.L"]
+
+
+@pytest.mark.parametrize(("names", "shown"), [("VRM", ["names", "known"]), ("SOURCE", ["names"])])
+def test_a_button_asks_first_what_the_bones_are_called_and_known_by(names, shown):
+    asked, drawn = [], []
+    window_manager = SimpleNamespace(invoke_props_dialog=lambda operator: asked.append(operator) or {"RUNNING_MODAL"})
+    operator = SimpleNamespace(names=names, layout=Layout(drawn), bl_rna=rename.get_rna_type())
+    context = SimpleNamespace(window_manager=window_manager)
+    assert HIERMATCH_OT_rename_bones.invoke(operator, context, None) == {"RUNNING_MODAL"}
+    assert asked == [operator]
+    HIERMATCH_OT_rename_bones.draw(operator, context)
+    assert drawn == [("prop", name) for name in shown]
 
 
 def test_what_is_no_person_is_said():
