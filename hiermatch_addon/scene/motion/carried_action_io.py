@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..plain_settings import written_settings
-from .action_curves import MADE_FOR, every_curve
+from .action_curves import MADE_FOR, every_curve, playing
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -47,11 +47,14 @@ def mark_carried(action: bpy.types.Action, model: bpy.types.Action) -> None:
 def carried_before(armature: bpy.types.Object, model: bpy.types.Action) -> bpy.types.Action | None:
     """Find the action that was made for an armature from another action, and that nothing else uses.
 
-    One that was renamed is the user's own.
+    One that was renamed is the user's own.  A rig that was renamed since still plays what was made for it.
     """
+    played = playing(armature)
     for action in bpy.data.actions:
         mine: Any = action
-        found = mine.get(_MODEL) == model.name and mine.get(MADE_FOR) == armature.name
+        owner = mine.get(MADE_FOR, "")
+        is_own = owner == armature.name or (owner not in bpy.data.objects and action.name in played)
+        found = is_own and mine.get(_MODEL) == model.name
         if found and mine.get(_NAMED) == action.name and action.library is None and not users_beside(action, armature):
             return action
     return None

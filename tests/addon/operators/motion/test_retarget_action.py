@@ -325,6 +325,25 @@ def test_what_was_carried_before_is_made_anew_in_its_place():
     assert not bpy.context.scene.hiermatch_retarget.report.notes
 
 
+@pytest.mark.parametrize("strips", [False, True])
+def test_a_rig_that_was_renamed_since_has_its_action_made_anew(strips):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    other, _ = add_person("C", "renamed")
+    add_action(source)
+    source.animation_data.nla_tracks.new().strips.new("Wave", 30, bpy.data.actions["Wave"])
+    carry(source="A", target="B", action="Wave", strips=strips, assign=not strips)
+    target.name = "Giant"
+    before = curves_values(bpy.data.actions["Wave B"])
+    carry(source="A", target="Giant", action="Wave", strips=strips, assign=not strips, keying="ALL")
+    assert set(bpy.data.actions.keys()) == {"Wave", "Wave B"}
+    assert curves_values(bpy.data.actions["Wave B"]) != before
+    carry(source="A", target="C", action="Wave")
+    assert other.animation_data.action.name == "Wave C"
+    carry(source="A", target="Giant", action="Wave", strips=strips, assign=not strips)
+    assert set(bpy.data.actions.keys()) == {"Wave", "Wave B", "Wave C"}
+
+
 def curves_values(action):
     """Frames and values of all keys, but for rounding."""
     return {
