@@ -9,6 +9,7 @@ import numpy as np
 
 from ...engine import Progress, called_steps, in_between, kept_in_place, turned_normals, within, wrap_steps
 from ..common.access import mesh_of, open_collections
+from ..common.long_names import LONGEST_KEY, shortened
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.attribute_io import read_corner_normals, write_corner_normals
 from ..scene.binding import hand_over
@@ -43,16 +44,10 @@ _LEAST_HELD = 0.9
 _MOST_FOLDED = 0.002
 """If more of the area is folded, that is told."""
 
-_NAME_BYTES = 60
-"""Longest name, in bytes, that Blender allows a shape key, with the number of an in-between."""
-
 
 def wrap_key_name(other: str) -> str:
     """Return the name of the shape key that wraps a mesh to another of that name."""
-    name = f"Wrap to {other}"
-    while len(name.encode()) > _NAME_BYTES - len(" 15/16"):
-        name = name[:-1]
-    return name
+    return shortened(f"Wrap to {other}", LONGEST_KEY - len(" 15/16"))  # with the number of an in-between
 
 
 class WrapTransfer(Transfer):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 import numpy as np
 
+from ...common.long_names import LONGEST_ID, shortened
 from ..plain_settings import written_settings
 from .action_curves import MADE_FOR, every_curve, playing
 
@@ -76,7 +77,7 @@ def put_aside(action: bpy.types.Action) -> str:
     mine: Any = action
     for mark in (_NAMED, _STATE):
         del mine[mark]
-    action.name = f"{action.name} (edited)"
+    action.name = shortened(action.name, LONGEST_ID, " (edited)")
     return action.name
 
 

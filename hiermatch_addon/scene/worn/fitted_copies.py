@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 import numpy as np
 
+from ...common.long_names import LONGEST_ID, shortened
 from ..character import FITTED_TO, armatures_above, parts_of, positions_of, topology_of
 from ..deform_layer import read_weights
 from ..plain_settings import written_settings
@@ -157,7 +158,7 @@ def put_aside(copy: bpy.types.Object) -> str:
     for mark in (ITEM, _AS_FITTED, _PLACE):  # it stays marked as worn: it is no part of the body
         if mark in marks:
             del marks[mark]
-    copy.name = f"{copy.name} (edited)"
+    copy.name = shortened(copy.name, LONGEST_ID, " (edited)")
     copy.hide_render = True
     layer = cast("bpy.types.ViewLayer", bpy.context.view_layer)
     layer.update()  # or it would not know of what was put into a collection just now

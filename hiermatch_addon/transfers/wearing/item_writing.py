@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from typing import TYPE_CHECKING, Any, cast
 
@@ -13,6 +12,7 @@ from scipy.sparse import csr_array
 
 from ...common.access import mesh_of
 from ...common.errors import ObjectError
+from ...common.long_names import LONGEST_KEY, shortened
 from ...common.phrases import listed
 from ...scene.armatures import find_armature
 from ...scene.binding import bind
@@ -50,9 +50,6 @@ _KEY = "Fit to "
 _FITS = "hiermatch_fits"
 """Custom property of an item: the names of its shape keys that fit it to bodies, as a JSON text."""
 
-_LONGEST_NAME = 63
-"""Bytes in the name of a shape key, at most; names of objects can be longer."""
-
 _FIT_NAMES = "Distance to Skin", "Pushed", "Uncertain"
 """What the color attributes of a fitted item show."""
 
@@ -73,12 +70,8 @@ def check_key(obj: bpy.types.Object, target: Side) -> None:
 
 
 def _key_name(body: str) -> str:
-    """Name the key that fits an item to a body; what is too long ends with a number, made of the whole name."""
-    name = f"{_KEY}{body}"
-    if len(name.encode()) <= _LONGEST_NAME:
-        return name
-    end = f"~{hashlib.blake2b(body.encode(), digest_size=2).hexdigest()}"
-    return name.encode()[: _LONGEST_NAME - len(end)].decode(errors="ignore") + end
+    """Name the key that fits an item to a body."""
+    return shortened(f"{_KEY}{body}", LONGEST_KEY)
 
 
 def write_key(obj: bpy.types.Object, target: Side, fitted: FittedItem) -> None:

@@ -30,6 +30,18 @@ def test_what_another_body_wears_is_left_alone(dressed_pair):
     assert made_copies() == ["Shirt on Target", "Shirt on Twin"]
 
 
+def test_a_copy_with_a_long_name_is_kept_aside_under_another_one(dressed_pair):
+    _, _, shirt, _ = dressed_pair
+    shirt.name = 300 * "S"
+    assert wear(shirt.name) == {"FINISHED"}
+    (name,) = made_copies()
+    bpy.data.objects[name].data.vertices[3].co.z += 0.5
+    assert wear(shirt.name) == {"FINISHED"}
+    (aside,) = set(made_copies()) - {name}
+    assert aside.endswith(" (edited)")
+    assert not bpy.data.objects[name].hide_render
+
+
 def test_a_copy_that_was_edited_is_kept_aside(dressed_pair):
     assert dressed_pair
     assert wear("Shirt", "Coat") == {"FINISHED"}

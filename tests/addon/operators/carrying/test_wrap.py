@@ -124,6 +124,7 @@ def test_in_betweens_follow_the_slider(pair):
 def test_names_fit_into_blender():
     assert wrap_key_name("Cube") == "Wrap to Cube"
     assert len((wrap_key_name("Ä" * 60) + " 15/16").encode()) <= 63
+    assert wrap_key_name("x" * 60 + ".L") != wrap_key_name("x" * 60 + ".R")
 
 
 def test_shared_meshes_are_refused(pair):

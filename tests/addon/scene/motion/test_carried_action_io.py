@@ -43,6 +43,17 @@ def test_what_was_put_aside_is_not_found(carried):
     assert was_carried(action)
 
 
+@pytest.mark.parametrize("letter", ["x", "Ä"])
+def test_a_name_that_is_too_long_is_cut_before_what_is_said_of_it(carried, letter):
+    _, _, action = carried
+    action.name = 300 * letter
+    long = action.name
+    aside = put_aside(action)
+    assert aside == action.name
+    assert aside.endswith(" (edited)")
+    assert aside.startswith(long[:100])
+
+
 def test_edits_are_seen_and_what_is_none_is_not(carried):
     rig, _model, action = carried
     curve = next(iter(curves_of(action).values()))
