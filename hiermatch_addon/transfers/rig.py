@@ -20,6 +20,7 @@ from ..scene.bone_constraints import adapt_constraints, displaced_bones
 from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
 from ..scene.pair import check_writable
+from ..scene.posing.exercise import end_exercise, is_exercising
 from ..scene.rest_action import keep_pose, pose_bases
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ class RigTransfer(Transfer):
         model = cast("bpy.types.Object", find_armature(source))
         placed = cast("PlacedJoints", self.placed)
         first = parts_of(target)[0]
-        made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
+        made = self._made_before(target, model)
         armature = made or copy_to(context, model, f"{target.name} Rig", first)
         missing = move_joints(context, armature, self.names, placed)
         if made is None:
@@ -167,6 +168,13 @@ class RigTransfer(Transfer):
         if made:
             done.append("updated")
         return TransferReport(", ".join(done), tuple(self._notes), tuple(replaced_remarks(target, replaced)))
+
+    def _made_before(self, target: Side, model: bpy.types.Object) -> bpy.types.Object | None:
+        """Return the armature that is to be updated, without test poses: with them what is written would be lost."""
+        made = made_rig(target, model) if self._settings.existing == "UPDATE" else None
+        if made is not None and is_exercising(made):
+            end_exercise(made)
+        return made
 
     def _kept_beside(self, target: Side, model: bpy.types.Object) -> list[bpy.types.Object] | None:
         """Return the armatures that are to move the target beside the new one; None for all."""

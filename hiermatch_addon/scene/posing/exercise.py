@@ -24,7 +24,8 @@ __all__ = ["begin_exercise", "bending_bones", "end_exercise", "is_exercising"]
 _WHY: Final = "test poses"
 
 _STATE: Final = "hiermatch_test_poses"
-"""Custom property, a JSON text: of an armature its markers, of a scene its frames before, of both what joins them."""
+"""Custom property, a JSON text: of an armature a number, which its copies have, and its markers, of a scene its frames
+before, of both what joins them."""
 
 _ACTION: Final = "hiermatch_test_action"
 """Custom property of the armature: the action, as a pointer that follows renaming."""
@@ -91,25 +92,30 @@ def begin_exercise(scene: bpy.types.Scene, armature: bpy.types.Object, bones: It
         markers.append((marker.name, marker.frame))
         frame += (len(turns) - 1) * _BEAT
     owner: Any = armature
-    owner[_STATE] = json.dumps({"scene": _lend(scene, frame), "markers": markers})
+    owner[_STATE] = json.dumps({"rig": uuid4().hex, "scene": _lend(scene, frame), "markers": markers})
     owner[_ACTION] = action
     scene.frame_set(1)
     return frame
 
 
 def end_exercise(armature: bpy.types.Object) -> None:
-    """Take the test poses away, and bring back what was before, in whatever scene they were begun."""
-    owner: Any = armature
-    state = _state_of(armature)
+    """Take the test poses away, and bring back what was before, in whatever scene they were begun.
+
+    So it is with copies of the armature that were made meanwhile.
+    """
     bring_back(armature)
+    state = _state_of(armature)
     if not state:
         return
-    action = owner.get(_ACTION)
-    if action is not None:
-        bpy.data.actions.remove(action)
-    for name in (_STATE, _ACTION):
-        if name in owner:
-            del owner[name]
+    for copy in [obj for obj in bpy.data.objects if _state_of(obj) == state]:
+        owner: Any = copy
+        bring_back(copy)
+        action = owner.get(_ACTION)
+        if action is not None:
+            bpy.data.actions.remove(action)
+        for name in (_STATE, _ACTION):
+            if name in owner:
+                del owner[name]
     for scene in bpy.data.scenes:
         if _state_of(scene).get("scene") == state["scene"]:
             _give_back(scene, state["markers"])

@@ -135,6 +135,45 @@ def test_a_rig_that_is_made_meanwhile_has_nothing_of_them(rigged):
     assert state(armature) == before
 
 
+def test_a_rig_that_is_made_anew_meanwhile_plays_them_no_longer(rigged):
+    obj, _ = rigged
+    target, _ = add_target(obj)
+    add_weights(obj, target)
+    made, _ = fit(obj, target)
+    pose(made, 0.2)
+    before = state(made)
+    bpy.ops.hiermatch.test_poses(target=target.name)
+    assert fit(obj, target, existing="UPDATE")[0] == made
+    assert not is_exercising(made)
+    assert state(made) == before
+
+
+@pytest.mark.parametrize("ended", ["original", "copy", "copy alone"])
+def test_a_copy_that_is_made_meanwhile_has_them_no_longer_than_the_rig(rigged, ended):
+    _, armature = rigged
+    before = state(armature)
+    bpy.ops.hiermatch.test_poses(target=armature.name)
+    bpy.context.view_layer.objects.active = armature
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(obj == armature)
+    assert bpy.ops.object.duplicate() == {"FINISHED"}
+    copy = bpy.context.view_layer.objects.active
+    assert copy != armature
+    if ended == "copy alone":
+        bpy.data.objects.remove(armature)
+        armature = copy
+    chosen = armature if ended == "original" else copy
+    assert bpy.ops.hiermatch.test_poses(target=chosen.name, remove=True) == {"FINISHED"}
+    for rig in {armature, copy}:
+        assert not is_exercising(rig)
+        assert not [name for name in rig.keys() if name.startswith("hiermatch")]  # noqa: SIM118 - not a dict
+        left = state(rig)
+        assert {name: left[name] for name in before if name != "actions"} == {
+            name: before[name] for name in before if name != "actions"
+        }
+        assert not [action.name for action in bpy.data.actions if "Test Poses" in action.name and action.users]
+
+
 def test_to_remove_what_is_not_there_changes_nothing(rigged):
     _, armature = rigged
     before = state(armature)
