@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import bpy
 import numpy as np
 
 from ..common.errors import ObjectError
@@ -22,7 +23,6 @@ from .landmark_names import landmark_names, name_landmark
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    import bpy
     from numpy.typing import NDArray
 
     from ..scene.character import Side
@@ -31,9 +31,11 @@ __all__ = [
     "Landmark",
     "Mark",
     "add_landmarks",
+    "changed_for_others",
     "clear_landmarks",
     "find_landmarks",
     "landmark_array",
+    "read_marks",
     "remove_landmark",
     "rename_landmark",
     "select_on_side",
@@ -141,6 +143,14 @@ def remove_landmark(source: Side, target: Side, number: int) -> None:
     for obj in (source, target):
         write_marks(obj, {other: mark for other, mark in read_marks(obj).items() if other != number})
         name_landmark(obj, number, "")
+
+
+def changed_for_others(side: Side, before: dict[int, Mark], pair: tuple[Side, Side]) -> list[str]:
+    """Return the names of meshes beside a pair that have landmarks which a side of it no longer has as `before`."""
+    now, own = read_marks(side), {part.data for each in pair for part in parts_of(each)}
+    changed = {number for number, mark in before.items() if now.get(number) != mark}
+    others = [obj for obj in bpy.data.objects if obj.type == "MESH" and obj.data not in own] if changed else []
+    return [obj.name for obj in others if changed & landmark_layer.read_marks(obj).keys()]
 
 
 def rename_landmark(source: Side, target: Side, number: int, name: str) -> None:

@@ -1871,6 +1871,7 @@ MESSAGES: Final[dict[str, str]] = {
     'Click on "{0}" or on "{1}".': "请点击“{0}”或“{1}”。",
     'Landmark {0}: vertex {1} of "{2}" is vertex {3} of "{4}"': "地标 {0}：“{2}”的顶点 {1} 对应“{4}”的顶点 {3}",
     "Removed landmark {0}": "已移除地标 {0}",
+    "{0} had that in common with {1} as well": "这也是 {0} 与 {1} 共有的地标",
     "Locked {0} as landmark {1}": "已将 {0} 锁定为地标 {1}",
     'Saved {0} to "{1}"': "已将 {0}保存到“{1}”",
     'Loaded {0} from "{1}"': "已从“{1}”加载 {0}",

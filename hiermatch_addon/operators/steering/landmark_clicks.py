@@ -19,8 +19,8 @@ from ...overlay.drawing import show_pending
 from ...properties.steering_lists import sync_lists
 from ...properties.steering_properties import steering_of
 from ...scene.character import SideReference, parts_of, vertex_count, vertex_ranges
-from ...storage.landmarks import add_landmarks, find_landmarks
-from .landmark_operator import pick_pair, steerable_pair
+from ...storage.landmarks import add_landmarks, find_landmarks, read_marks
+from .landmark_operator import pick_pair, steerable_pair, told_of_others
 from .landmark_picking import cast_ray, places_around
 from .viewports import is_in_viewport, viewport_at
 
@@ -210,7 +210,10 @@ class LandmarkClicks(_Operator):
             self._pending = None
             raise ObjectError(f'"{edited.name}" was edited since the click on it. Click on its place again.')
         pair = (first.vertex, clicked.vertex) if first.side == 0 else (clicked.vertex, first.vertex)
+        before = [read_marks(side) for side in (source, target)]
         (added,) = add_landmarks(source, target, [pair], self._place_name())
+        if others := told_of_others((source, target), before):
+            self.report({"INFO"}, translated(others))
         self._made = [*(mark for mark in self._made if mark.number != added.number), added]  # one may have moved
         self._pending, self._undone = None, []
         sync_lists(cast("bpy.types.Scene", context.scene))

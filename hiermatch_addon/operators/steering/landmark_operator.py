@@ -8,18 +8,25 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ...common.errors import ObjectError
+from ...common.phrases import listed
 from ...common.translated_text import translated
 from ...jobs.running import is_idle
 from ...properties.panel_state import pick, picked, state_of
 from ...properties.steering_lists import sync_lists
 from ...scene.character import Character, parts_of
 from ...scene.pair import check_mode, check_writable, find_pair
+from ...storage.landmarks import changed_for_others, read_marks
 from ..pair_operator import PairOperator
 
 if TYPE_CHECKING:
-    from ...scene.character import Side
+    from collections.abc import Sequence
 
-__all__ = ["LandmarkOperator", "pick_pair", "steerable_pair"]
+    from bpy.stub_internal.rna_enums import OperatorReturnItems
+
+    from ...scene.character import Side
+    from ...storage.landmarks import Mark
+
+__all__ = ["LandmarkOperator", "pick_pair", "steerable_pair", "told_of_others"]
 
 
 def steerable_pair(context: bpy.types.Context, names: tuple[str, str] = ("", "")) -> tuple[Side, Side]:
@@ -69,6 +76,14 @@ def _handle(side: Side) -> bpy.types.ID | None:
     return None
 
 
+def told_of_others(pair: tuple[Side, Side], before: Sequence[dict[int, Mark]]) -> str:
+    """Say which other meshes had landmarks in common with a pair that have changed since; empty if none had."""
+    found = [changed_for_others(side, marks, pair) for side, marks in zip(pair, before, strict=True)]
+    sides = [side.name for side, others in zip(pair, found, strict=True) if others]
+    others = list(dict.fromkeys(name for names in found for name in names))
+    return f"{listed(sides)} had that in common with {listed(others)} as well" if others else ""
+
+
 class LandmarkOperator(PairOperator):
     """An operator on two meshes, in Object Mode or in Edit Mode; to be inherited from before `bpy.types.Operator`."""
 
@@ -86,8 +101,18 @@ class LandmarkOperator(PairOperator):
             return False
         return True
 
+    def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
+        """Do it, and report, also what has changed for other meshes by that."""
+        self._for_others = ""
+        done = super().execute(context)
+        if self._for_others:
+            self.report({"INFO"}, translated(self._for_others))
+        return done
+
     def _do(self, context: bpy.types.Context, source: Side, target: Side) -> str:
+        before = [read_marks(side) for side in (source, target)]
         done = self._edit(context, source, target)
+        self._for_others = told_of_others((source, target), before)
         pick_pair(context, source, target)
         sync_lists(cast("bpy.types.Scene", context.scene))
         return done

@@ -176,6 +176,30 @@ class TestEditing:
         bpy.ops.hiermatch.clear_landmarks()
         assert found(pair) == listed() == []
 
+    def test_a_change_for_third_meshes_is_said(self, pair, third, capfd):
+        def said():
+            return [line for line in capfd.readouterr().out.splitlines() if "as well" in line]
+
+        said()
+        add(200, 200)
+        bpy.ops.hiermatch.select_landmark(number=4)
+        bpy.ops.hiermatch.remove_landmark(number=4)
+        assert not said()  # the third has none of that number
+        add(70, 31)
+        assert said() == ['Info: "Target" had that in common with "Target.001" as well']
+        bpy.ops.hiermatch.switch_landmark(number=3, use=False)
+        both = ['Info: "Source", "Target" had that in common with "Target.001" as well']
+        assert said() == both
+        bpy.ops.hiermatch.remove_landmark(number=3)
+        assert said() == both
+        bpy.ops.hiermatch.clear_landmarks()
+        assert said() == both
+        bpy.data.objects.remove(third)
+        add(70, 30)
+        bpy.ops.hiermatch.clear_landmarks()
+        assert not said()
+        assert not found(pair)
+
     @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
     def test_select(self, pair, mode):
         add(3, 5)

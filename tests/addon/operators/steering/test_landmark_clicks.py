@@ -92,6 +92,17 @@ def test_a_landmark_that_is_moved_by_a_click_is_counted_once(clicks, pair):
     assert ends_of(find_landmarks(*pair)) == ends_of(clicks._made) == [(3, 9)]  # noqa: SLF001
 
 
+def test_a_landmark_that_is_moved_by_a_click_for_third_meshes_is_told(clicks, pair):
+    third = pair[1].copy()
+    third.data = pair[1].data.copy()
+    bpy.context.collection.objects.link(third)
+    for target in (pair[1], third):
+        add_landmarks(pair[0], target, [(3, 7)])
+    clicks.click(pair[0], 3)
+    clicks.click(pair[1], 9)
+    assert clicks.reports == ['"Target" had that in common with "Target.001" as well']
+
+
 def test_only_one_waits_for_clicks_at_a_time(clicks, pair, press, monkeypatch):
     manager = SimpleNamespace(
         windows=[SimpleNamespace(modal_operators=[clicks], screen=SimpleNamespace(areas=[]))],
