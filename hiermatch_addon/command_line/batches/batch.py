@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from ...common.file_writing import check_place
 from ..command import EXIT_CODES, ExitCode, UsageError
 from ..console import Console, interruptible
-from ..meshes import mesh_argument
 from ..options import add_options, given_options, option_names, quoted_names
 from ..reports import add_least_confidence, file_state
 from .ledger import Ledger, counts, summary_rows
@@ -165,7 +164,7 @@ def _tasks(
         told.append(f"--least-confidence={parsed.least_confidence}")
         if pair.command != "match" and "accept_doubtful" not in dict(pair.options):
             told.append("--accept-doubtful")  # one bad pair of many is looked at later: the summary names it
-        ledger.report_path(pair).unlink(missing_ok=True)  # else that of a former run would stand for a crashed one
+        ledger.forget(pair)  # else that of a former run would stand for a crashed one
         tasks[pair.stem] = Task(pair.stem, [*arguments, *told], ledger.log_path(pair), after), pair, inputs
         writers |= dict.fromkeys(pair.written, pair.stem)
     if known:
@@ -189,12 +188,12 @@ def _checked_arguments(pair: Pair, check: Callable[[list[str]], object]) -> tupl
         raise UsageError("output is empty, so nothing would be left of the work. Name the file to write")
     try:
         check(arguments)
-        paths = [mesh_argument(text).path for text in (pair.source, pair.target)]
+        paths = pair.inputs
     except argparse.ArgumentTypeError as error:
         raise UsageError(str(error)) from error
     if set(pair.written) & set(pair.read):
         raise UsageError("it would write over its own source or target")  # and never be known as done
-    return arguments, [file_state(path) for path in dict.fromkeys(paths)]
+    return arguments, [file_state(path) for path in paths]
 
 
 def _close(pair: Pair, inputs: list[dict[str, Any]], ended: Ended, ledger: Ledger, console: Console) -> None:

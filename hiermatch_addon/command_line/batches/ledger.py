@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import csv
 import io
 import json
@@ -53,8 +54,21 @@ class Ledger:
         self.folder = folder
 
     def report_path(self, pair: Pair) -> Path:
-        """Return where the report of a pair is."""
+        """Return where the report of a pair is to be."""
         return self.folder / f"{pair.stem}.json"
+
+    def found_path(self, pair: Pair) -> Path:
+        """Return where the report of a pair is, if there is one: maybe where it was to be formerly."""
+        path, former = self.report_path(pair), self._former_path(pair)
+        return former if former.is_file() and not path.is_file() else path
+
+    def _former_path(self, pair: Pair) -> Path:
+        return self.folder / f"{pair.former[0]}.json"
+
+    def forget(self, pair: Pair) -> None:
+        """Remove the report of a pair."""
+        for path in (self.report_path(pair), self._former_path(pair)):
+            path.unlink(missing_ok=True)
 
     def log_path(self, pair: Pair) -> Path:
         """Return where all that is kept that Blender printed about a pair."""
@@ -66,19 +80,19 @@ class Ledger:
         With `any_options` the pair may have been done with other options.
         """
         try:
-            report = json.loads(self.report_path(pair).read_text(encoding="utf-8"))
+            report = json.loads(self.found_path(pair).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return None
         if not isinstance(report, dict) or report.get("format") != FORMAT:
             return None
-        if report.get("key") != pair.key and not any_options:
+        if report.get("key") not in (pair.key, pair.former[1]) and not any_options:
             return None
         if report.get("status") not in STATUSES or report["status"] == "interrupted":
             return None
         inputs = report.get("inputs", [])
-        if [file_state(Path(one["path"])) for one in inputs] != inputs:
+        if inputs and list(map(_unplaced, inputs)) != _inputs(pair):
             return None
-        written = report.get("written", []) if report["status"] == "done" else []
+        written = [*pair.outputs, *filter(None, [pair.map])] if report["status"] == "done" else []
         return report if all(Path(path).is_file() for path in written) else None
 
     def fail(
@@ -119,6 +133,18 @@ class Ledger:
         return path
 
 
+def _inputs(pair: Pair) -> list[dict[str, Any]]:
+    """Return by what the files of source and target are recognised as unchanged, wherever they are."""
+    try:
+        return [_unplaced(file_state(path)) for path in pair.inputs]
+    except argparse.ArgumentTypeError:
+        return []
+
+
+def _unplaced(state: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in state.items() if name != "path"}
+
+
 def summary_rows(
     ledger: Ledger, pairs: Sequence[Pair], least_confidence: float, *, any_options: bool = False
 ) -> list[dict[str, Any]]:
@@ -148,7 +174,7 @@ def summary_rows(
                 "sentence": quality.get("sentence", ""),
                 "alternatives": len(match["alternatives"]) if "alternatives" in match else None,
                 "error": report.get("error", ""),
-                "report": str(ledger.report_path(pair)),
+                "report": str(ledger.found_path(pair)),
             }
         )
     return rows

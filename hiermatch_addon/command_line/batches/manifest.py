@@ -9,6 +9,7 @@ import csv
 import hashlib
 import io
 import json
+import os
 from dataclasses import dataclass
 from os.path import normcase, normpath, realpath
 from pathlib import Path
@@ -21,7 +22,7 @@ from ..options import option_names, quoted_names, to_arguments
 from ..retarget import NOT_OF_THE_MATCH
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 __all__ = ["COMMANDS", "Pair", "read_manifest", "take_shard"]
 
@@ -36,6 +37,9 @@ COMMANDS = {
 
 _FIXED = ("name", "command", "source", "target", "output", "map")
 """Columns that are no options."""
+
+_OF_BONES = ("pairs", "write_pairs")
+"""Options of `motion` that are no columns."""
 
 _LISTED = {"items": quoted_names, "output": "|".join}
 """Columns with several names or files: how a list of them in a .json is written in a table."""
@@ -61,6 +65,8 @@ class Pair:
         Where to write the correspondence, absolute; empty if nowhere.
     options : tuple
         Name and value of each option that is given, sorted.
+    folder : str
+        The manifest's folder, absolute.
     """
 
     number: int
@@ -71,6 +77,18 @@ class Pair:
     outputs: tuple[str, ...]
     map: str
     options: tuple[tuple[str, str], ...]
+    folder: str
+
+    @property
+    def inputs(self) -> list[Path]:
+        """The files of source and target, each once.
+
+        Raises
+        ------
+        argparse.ArgumentTypeError
+            If one is no file of a known kind.
+        """
+        return list(dict.fromkeys(mesh_argument(text).path for text in (self.source, self.target)))
 
     @property
     def written(self) -> tuple[str, ...]:
@@ -85,16 +103,36 @@ class Pair:
     @property
     def key(self) -> str:
         """A text that is the same as long as the same is to be done with the same files."""
-        plain = [self.command, self.source, self.target, self.outputs, self.map, self.options]
-        return hashlib.blake2b(json.dumps(plain).encode(), digest_size=16).hexdigest()
+        return self._key(self._below)
 
     @property
     def stem(self) -> str:
         """What the files about the pair are called: after it, and so that no two are called alike."""
-        plain = json.dumps([self.command, self.source, self.target, self.outputs, self.map])
-        digest = hashlib.blake2b(plain.encode(), digest_size=4).hexdigest()
+        return self._stem(self._below)
+
+    @property
+    def former(self) -> tuple[str, str]:
+        """The stem and the key that it had when all paths counted as absolute: reports of then still count."""
+        return self._stem(str), self._key(str)
+
+    def _stem(self, shown: Callable[[str], str]) -> str:
         readable = "".join(letter if letter.isalnum() or letter in "-_" else "_" for letter in self.name)
-        return f"{readable[:60]}-{digest}"
+        return f"{readable[:60]}-{_digest(self._work(shown), 4)}"
+
+    def _key(self, shown: Callable[[str], str]) -> str:
+        return _digest([*self._work(shown), self.options], 16)
+
+    def _work(self, shown: Callable[[str], str]) -> list[Any]:
+        """Return what is to be done with which files, these as they are to be shown."""
+        outputs = tuple(map(shown, self.outputs))
+        return [self.command, shown(self.source), shown(self.target), outputs, shown(self.map)]
+
+    def _below(self, path: str) -> str:
+        """Return a path below the manifest's folder as seen from there: other machines may have it elsewhere."""
+        for folder in (self.folder, normpath(self.folder)):
+            if path.startswith(folder + os.sep):
+                return path[len(folder) + 1 :].replace(os.sep, "/")
+        return path
 
     def arguments(self) -> list[str]:
         """Return the subcommand with its arguments.
@@ -145,6 +183,11 @@ def read_manifest(path: Path, defaults: Mapping[str, str], command: str) -> list
         raise ObjectError(f'"{path}" is no manifest: {error}. See the manual page for its format.') from error
     known = {*_FIXED, *(name for operators in COMMANDS.values() for one in operators for name in option_names(one))}
     unknown = sorted({name for row in (*rows, common) for name in row} - known)
+    if of_bones := [name for name in unknown if name in _OF_BONES]:
+        raise ObjectError(
+            f"A batch pairs the bones of each row by itself: remove the column {', '.join(of_bones)} from "
+            f'"{path.name}", and run rows that need a file of pairs one by one, by "motion".'
+        )
     if unknown:
         raise ObjectError(
             f'"{path.name}" has columns that are no options: {", ".join(unknown)}. Rename or remove them.'
@@ -249,8 +292,20 @@ def _pair(number: int, row: Mapping[str, str], defaults: Mapping[str, str], comm
     named = outputs[0] if outputs else written
     name = Path(named).stem if named else f"{Path(source).stem}-{Path(target).stem}"
     return Pair(
-        number, row.get("name") or name, command, source, target, outputs, written, tuple(sorted(options.items()))
+        number=number,
+        name=row.get("name") or name,
+        command=command,
+        source=source,
+        target=target,
+        outputs=outputs,
+        map=written,
+        options=tuple(sorted(options.items())),
+        folder=str(folder),
     )
+
+
+def _digest(plain: list[Any], size: int) -> str:
+    return hashlib.blake2b(json.dumps(plain).encode(), digest_size=size).hexdigest()
 
 
 def _operator_of(command: str, name: str) -> str | None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import os
 import signal
@@ -137,6 +138,50 @@ def test_only_what_has_changed_is_done_again(stand_in):
     assert stand_in.run("--points=12") == (0, ["a"])
     (stand_in.folder / "target.obj").write_text("another target")
     assert stand_in.run("--points=12") == (0, ["a", "b", "c"])
+
+
+def test_what_is_done_is_done_wherever_its_folder_is_mounted(stand_in):
+    show = Batch(stand_in.folder / "show")
+    show.runs = stand_in.runs
+    show.folder.mkdir()
+    outside = stand_in.folder / "outside.obj"
+    outside.write_text("outside")
+    show.write(["a", "b", "bad"], row=f"{{0}}.obj,{outside},out/{{0}}.blend")
+    assert show.run() == (4, ["a", "b", "bad"])
+    other = Batch(stand_in.folder / "mounted" / "elsewhere")
+    other.folder.parent.mkdir()
+    show.folder.rename(other.folder)
+    other.runs = stand_in.runs
+    assert other.run() == (4, [])
+    assert [row["status"] for row in other.summary.values()] == ["done", "done", "failed"]
+    assert all(Path(row["report"]).is_file() for row in other.summary.values())
+    (other.folder / "out" / "b.blend").unlink()
+    assert other.run() == (4, ["b"])
+    (other.folder / "a.obj").write_text("something else")
+    assert other.run() == (4, ["a"])
+    outside.write_text("something else")
+    assert other.run() == (4, ["a", "b", "bad"])
+
+
+def test_reports_of_when_all_paths_counted_as_absolute_still_count(stand_in):
+    stand_in.write(["a", "b", "bad"])
+    stand_in.run("--points=12")
+    ledger = Ledger(stand_in.folder / "pairs.csv.hiermatch")
+    for pair in read_manifest(stand_in.manifest, {"points": "12"}, "match"):
+        paths = [pair.command, pair.source, pair.target, pair.outputs, pair.map]
+        key, end = (
+            hashlib.blake2b(json.dumps(plain).encode(), digest_size=size).hexdigest()
+            for plain, size in (([*paths, pair.options], 16), (paths, 4))
+        )
+        report = json.loads(ledger.report_path(pair).read_text())
+        ledger.report_path(pair).unlink()
+        (ledger.folder / f"{pair.name}-{end}.json").write_text(json.dumps(report | {"key": key}))
+    assert stand_in.run("--points=12") == (4, [])
+    assert [row["status"] for row in stand_in.summary.values()] == ["done", "done", "failed"]
+    assert all(Path(row["report"]).is_file() for row in stand_in.summary.values())
+    assert stand_in.run("--points=12", "--retry-failed") == (4, ["bad"])
+    assert stand_in.run() == (4, ["a", "b", "bad"])
+    assert len(list(ledger.folder.glob("*-*.json"))) == 3
 
 
 def test_rows_may_move_and_be_added(stand_in):
@@ -344,6 +389,7 @@ def test_json_has_options_for_all(tmp_path):
     ("text", "said"),
     [
         ("source,target,pionts\na.obj,b.obj,3\n", "no options: pionts"),
+        ("source,target,pairs\na.obj,b.obj,p.json\n", "pairs the bones of each row by itself: remove the column pairs"),
         ("source,output\na.obj,b.obj\n", 'no column "target"'),
         ("a.obj,b.obj,c.blend\n", 'no column "source". Its first line has to name them'),
         ("source,target\na.obj,b.obj,c.obj\n", "another number of columns"),
