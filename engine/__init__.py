@@ -5,6 +5,7 @@ from .dense.credibility import DOUBTFUL
 from .dense.densify import densify, densify_steps
 from .dense.quality import DenseMatch, MatchQuality, exchanged_sentence
 from .geometry.geodesics import GeodesicSolver
+from .geometry.procrustes import nearest_similarity
 from .geometry.voronoi_labels import nearest_regions
 from .hierarchical.settings import SETUPS, MatchSettings
 from .hierarchical.sparse_result import CoarseMatch, Level
@@ -169,6 +170,7 @@ __all__ = [
     "moved_into",
     "moved_with_items",
     "nearest_regions",
+    "nearest_similarity",
     "open_ends",
     "pair_bones",
     "paired_limb_tips",

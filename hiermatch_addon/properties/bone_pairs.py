@@ -14,7 +14,9 @@ from mathutils import Matrix, Quaternion, Vector
 from ...engine import BonePairing
 from ..common.errors import ObjectError
 from ..common.file_writing import read_text, write_whole
+from ..common.phrases import listed
 from ..scene.armatures import armature_of
+from ..scene.motion.rest_changes import REST_NUMBERS, change_of_rest, rest_points
 from ..scene.motion.rigs import object_rotation, own_skeleton
 
 if TYPE_CHECKING:
@@ -30,7 +32,7 @@ __all__ = [
     "clear_rows",
     "held_pairs",
     "load_pairs",
-    "lost_bones",
+    "pairing_notes",
     "pairing_of",
     "rows_of",
     "save_pairs",
@@ -41,7 +43,11 @@ _props: Any = bpy.props  # whose functions Blender's stubs declare to return not
 
 _FORMAT, _VERSION = "HierMatch bone pairs", 1
 
-_VALUES = ("turn", "place", "upright")
+_VALUES = {"turn": 4, "place": 3, "upright": 4}
+"""How many numbers say what was seen on the surface of a row."""
+
+_RESTS = {"source_rest": REST_NUMBERS, "target_rest": REST_NUMBERS}
+"""How many numbers say how the bones of a row lay then.  Files of older versions have none."""
 
 
 def _is_armature(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
@@ -89,6 +95,16 @@ class HIERMATCH_PG_bone_pair(bpy.types.PropertyGroup):
         subtype="QUATERNION",
         default=(1, 0, 0, 0),
     )
+    source_rest: _props.FloatVectorProperty(
+        name="Source Bone at Rest",
+        description="Head, tail and a point beside the head of the source bone when turn and place were seen",
+        size=REST_NUMBERS,
+    )
+    target_rest: _props.FloatVectorProperty(
+        name="Target Bone at Rest",
+        description="Head, tail and a point beside the head of the target bone when turn and place were seen",
+        size=REST_NUMBERS,
+    )
     is_seen: _props.BoolProperty(
         name="Seen", description="Whether turn and place were seen on the surface; a row made by hand has none"
     )
@@ -104,14 +120,23 @@ def rows_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.
     return [row for row in bone_pairs_of(scene) if row.source_rig == source and row.target_rig == target]
 
 
-def lost_bones(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
-    """Return the names that rows of two armatures have for bones of which there are no more."""
-    named = [
-        (rig, name)
-        for row in rows_of(scene, source, target)
-        for rig, name in ((source, row.source), (target, row.target))
-    ]
-    return list(dict.fromkeys(name for rig, name in named if name and name not in armature_of(rig).bones))
+def pairing_notes(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> list[str]:
+    """Say which rows of two armatures are out of date: their bones are gone, or lie otherwise at rest than they did."""
+    rows, notes = rows_of(scene, source, target), []
+    named = [(rig, name) for row in rows for rig, name in ((source, row.source), (target, row.target))]
+    if lost := list(dict.fromkeys(name for rig, name in named if name and name not in armature_of(rig).bones)):
+        notes.append(
+            f"Pairs of bones that are gone, or called otherwise by now, were left out: {listed(lost)}. Pair "
+            "the bones again."
+        )
+    present = _present(rows, source, target)
+    held = _Changes(present, source, target).held
+    if moved := [row.target for row, holds in zip(present, held, strict=True) if row.is_seen and not holds]:
+        notes.append(
+            f"The rest pose has changed since bones were paired, and these go by how they lie now: {listed(moved)} of "
+            f'"{target.name}". Pair the bones again.'
+        )
+    return notes
 
 
 def held_pairs(
@@ -135,6 +160,7 @@ def write_pairing(
     locked = {(row.source, row.target) for row in rows_of(scene, source, target) if row.locked}
     _remove(scene, [row for row in rows_of(scene, source, target) if not row.locked or row.source])
     upright = _quaternion(pairing.upright)
+    rests = rest_points(source, names[0]), rest_points(target, names[1])
     for number in range(len(pairing)):
         row = bone_pairs_of(scene).add()
         row.source, row.target = names[0][pairing.sources[number]], names[1][pairing.targets[number]]
@@ -144,13 +170,17 @@ def write_pairing(
         row.locked = (row.source, row.target) in locked
         row.turn = _quaternion(pairing.rotations[number])
         row.place = pairing.places[number].tolist()
+        row.source_rest = rests[0][pairing.sources[number]].tolist()
+        row.target_rest = rests[1][pairing.targets[number]].tolist()
         row.upright, row.is_seen = upright, True
 
 
 def pairing_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.types.Object) -> BonePairing:
     """Read the pairs of two armatures, in the armatures' own spaces.
 
-    A row that was made by hand is turned as the bones are: its turn takes the direction of the one to the other's.
+    A row that was made by hand, or whose bones lie otherwise at rest than when it was seen, is turned as the bones are:
+    its turn takes the direction of the one to the other's.  What moved, turned or scaled all bones of an armature, as
+    Apply does, moves, turns and scales what was seen.
 
     Raises
     ------
@@ -158,19 +188,22 @@ def pairing_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.typ
         If there is none.
     """
     numbers = [{bone.name: number for number, bone in enumerate(armature_of(rig).bones)} for rig in (source, target)]
-    rows = [row for row in rows_of(scene, source, target) if row.source in numbers[0] and row.target in numbers[1]]
+    rows = _present(rows_of(scene, source, target), source, target)
     if not rows:
         raise ObjectError(f'No bones of "{source.name}" and "{target.name}" are paired. Pair their bones first.')
     trees = own_skeleton(source), own_skeleton(target)
     sources = np.array([numbers[0][row.source] for row in rows], np.int64)
     targets = np.array([numbers[1][row.target] for row in rows], np.int64)
-    seen = next((row for row in rows if row.is_seen), None)
-    upright = _matrix(seen.upright) if seen else object_rotation(target).T @ object_rotation(source)
+    changes = _Changes(rows, source, target)
+    seen = [row.is_seen and holds for row, holds in zip(rows, changes.held, strict=True)]
+    upright = object_rotation(target).T @ object_rotation(source)
+    if any(seen):
+        upright = changes.turned(rows[seen.index(True)].upright)
     turns, places = [], []
-    for row, one, other in zip(rows, sources, targets, strict=True):
-        if row.is_seen:
-            turns.append(_matrix(row.turn))
-            places.append(np.array(row.place, np.float64))
+    for row, is_seen, one, other in zip(rows, seen, sources, targets, strict=True):
+        if is_seen:
+            turns.append(changes.turned(row.turn))
+            places.append(changes.placed(row.place))
             continue
         start, goal = (
             upright @ (trees[0].tails[one] - trees[0].heads[one]),
@@ -228,7 +261,7 @@ def save_pairs(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.typ
         raise ObjectError(f'No bones of "{source.name}" and "{target.name}" are paired. Pair their bones first.')
     pairs = [
         {"source": row.source, "target": row.target, "score": row.score, "locked": row.locked}
-        | ({name: list(getattr(row, name)) for name in _VALUES} if row.is_seen else {})
+        | ({name: list(getattr(row, name)) for name in _VALUES | _RESTS} if row.is_seen else {})
         for row in rows
     ]
     text = {"format": _FORMAT, "version": _VERSION, "source": source.name, "target": target.name, "pairs": pairs}
@@ -289,10 +322,51 @@ def _checked(pair: dict[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {"source": str(pair["source"]), "target": str(pair["target"])}
     found |= {"score": float(pair.get("score", 1.0)), "locked": bool(pair.get("locked", False))}
     if all(name in pair for name in _VALUES):
-        found |= {name: [float(value) for value in pair[name]] for name in _VALUES}
-        if [len(found[name]) for name in _VALUES] != [4, 3, 4]:
+        sizes = {name: size for name, size in (_VALUES | _RESTS).items() if name in pair}
+        found |= {name: [float(value) for value in pair[name]] for name in sizes}
+        if any(len(found[name]) != size for name, size in sizes.items()):
             raise ValueError
     return found
+
+
+class _Changes:
+    """What became of the spaces of two armatures since rows, whose bones there are, were seen.
+
+    Parameters
+    ----------
+    rows : sequence
+        The rows.
+    source, target : bpy.types.Object
+        The armatures.
+
+    Attributes
+    ----------
+    held : (n,) array of bool
+        Whether what was seen of a row holds: its bones changed as all others did.
+    """
+
+    def __init__(self, rows: Sequence[Any], source: bpy.types.Object, target: bpy.types.Object) -> None:
+        self.held, self._linear, self._turns = np.ones(len(rows), bool), np.eye(3), [np.eye(3), np.eye(3)]
+        for number, (side, rig) in enumerate((("source", source), ("target", target))):
+            then = np.array([getattr(row, f"{side}_rest") for row in rows], np.float64).reshape(-1, REST_NUMBERS)
+            now = rest_points(rig, [getattr(row, side) for row in rows])
+            self._linear, self._translation, held = change_of_rest(then, now)  # of the target at last
+            self._turns[number] = self._linear / np.cbrt(np.linalg.det(self._linear))
+            self.held &= held
+
+    def turned(self, quaternion: Any) -> NDArray[np.float64]:  # noqa: ANN401 - a vector of Blender's
+        """Return a turn of the target against the source as it is now, as a matrix."""
+        return self._turns[1] @ _matrix(quaternion) @ self._turns[0].T
+
+    def placed(self, place: Any) -> NDArray[np.float64]:  # noqa: ANN401 - a vector of Blender's
+        """Return where a place in the target is now."""
+        return self._linear @ np.array(place, np.float64) + self._translation
+
+
+def _present(rows: Sequence[Any], source: bpy.types.Object, target: bpy.types.Object) -> list[Any]:
+    """Return those rows of two armatures whose bones there are."""
+    bones = armature_of(source).bones, armature_of(target).bones
+    return [row for row in rows if row.source in bones[0] and row.target in bones[1]]
 
 
 def _remove(scene: bpy.types.Scene, rows: Sequence[Any]) -> None:

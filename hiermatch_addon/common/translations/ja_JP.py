@@ -1102,6 +1102,14 @@ MESSAGES: Final[dict[str, str]] = {
     "Armature of the target": "ターゲットのアーマチュア",
     "Score": "スコア",
     "How well the two agree, from 0 to 1": "二つがどれだけ一致するか。0から1",
+    "Source Bone at Rest": "ソースボーンのレスト位置",
+    "Head, tail and a point beside the head of the source bone when turn and place were seen": (
+        "向きと位置を確認したときの、ソースボーンのヘッド、テール、ヘッドの横の点"
+    ),
+    "Target Bone at Rest": "ターゲットボーンのレスト位置",
+    "Head, tail and a point beside the head of the target bone when turn and place were seen": (
+        "向きと位置を確認したときの、ターゲットボーンのヘッド、テール、ヘッドの横の点"
+    ),
     "Seen": "表面で確認",
     "Whether turn and place were seen on the surface; a row made by hand has none": (
         "回転と位置が表面から求められたかどうか。手で作った行にはありません"
@@ -1223,6 +1231,11 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Pairs of bones that are gone, or called otherwise by now, were left out: {0}. Pair the bones again.": (
         "なくなったか、名前が変わったボーンのペアは除外されました: {0}。ボーンをもう一度ペアにしてください。"
+    ),
+    'The rest pose has changed since bones were paired, and these go by how they lie now: {0} of "{1}". Pair the bones '
+    "again.": (
+        'ボーンをペアにした後でレストポーズが変わったため、次のボーンは現在の向きに従います: "{1}"の{0}。ボーンを'
+        "もう一度ペアにしてください。"
     ),
     'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
     "Clear Transform) unless that is wanted.": (

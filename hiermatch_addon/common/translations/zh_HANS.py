@@ -907,6 +907,14 @@ MESSAGES: Final[dict[str, str]] = {
     "Armature of the target": "目标的骨架",
     "Score": "得分",
     "How well the two agree, from 0 to 1": "两者的吻合程度，0 到 1",
+    "Source Bone at Rest": "源骨骼的静置位置",
+    "Head, tail and a point beside the head of the source bone when turn and place were seen": (
+        "确认旋转和位置时源骨骼的头端、尾端以及头端旁的一点"
+    ),
+    "Target Bone at Rest": "目标骨骼的静置位置",
+    "Head, tail and a point beside the head of the target bone when turn and place were seen": (
+        "确认旋转和位置时目标骨骼的头端、尾端以及头端旁的一点"
+    ),
     "Seen": "已在表面确认",
     "Whether turn and place were seen on the surface; a row made by hand has none": (
         "旋转和位置是否由表面得出；手动建立的行没有"
@@ -1014,6 +1022,8 @@ MESSAGES: Final[dict[str, str]] = {
     "Pairs of bones that are gone, or called otherwise by now, were left out: {0}. Pair the bones again.": (
         "已不存在或已改名的骨骼的配对被略过：{0}。请重新配对骨骼。"
     ),
+    'The rest pose has changed since bones were paired, and these go by how they lie now: {0} of "{1}". Pair the bones '
+    "again.": ('骨骼配对之后静置姿态已改变，以下骨骼按现在的朝向计算："{1}" 的 {0}。请重新配对骨骼。'),
     'Bones without a pair that are not at rest turn all that hangs on them: {0} of "{1}". Clear their pose (Pose > '
     "Clear Transform) unless that is wanted.": (
         '没有配对且不在静置姿态的骨骼会带动挂在其上的一切旋转："{1}" 的 {0}。如非有意，请清除其姿态'

@@ -17,7 +17,7 @@ from ...common.phrases import counted, listed
 from ...jobs.stepped_job import SteppedJob
 from ...jobs.transfer import TransferReport
 from ...jobs.transfer_job import Carried
-from ...properties.bone_pairs import lost_bones, pairing_of, rows_of
+from ...properties.bone_pairs import pairing_notes, pairing_of, rows_of
 from ...scene.armatures import armature_of
 from ...scene.character import SideReference
 from ...scene.motion.action_curves import scaled_bones
@@ -201,12 +201,7 @@ class MotionJob(SteppedJob):
                 f'{listed(fixed)} of "{rig.name}". To carry that as well disconnect them (Armature > Parent > '
                 "Disconnect Bone in Edit Mode)."
             )
-        if lost := lost_bones(scene, source, rig):
-            notes.append(
-                f"Pairs of bones that are gone, or called otherwise by now, were left out: {listed(lost)}. Pair "
-                "the bones again."
-            )
-        return notes
+        return notes + pairing_notes(scene, source, rig)
 
     def _write(
         self, rig: bpy.types.Object, action: bpy.types.Action, notes: list[str], *, alone: bool

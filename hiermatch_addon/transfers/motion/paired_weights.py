@@ -13,7 +13,7 @@ from ....engine import Columns, carry_weights_steps, paired_weights, put_in
 from ...common.errors import ObjectError
 from ...common.phrases import counted, listed
 from ...jobs.transfer import Transfer, TransferReport
-from ...properties.bone_pairs import pairing_of
+from ...properties.bone_pairs import pairing_notes, pairing_of
 from ...scene.armatures import armature_of, find_armature, read_rig, read_skeleton
 from ...scene.character import parts_of, vertex_ranges
 from ...scene.deform_layer import check_weights_writable
@@ -99,7 +99,7 @@ class PairedWeightTransfer(Transfer):
         handed = paired_weights(carried.weights, vertices, task.pairing, task.rig.skeleton, task.skeleton)
         self._result = put_in(task.before, handed, task.columns, limit=self._limit)
 
-    def write(self, _context: bpy.types.Context, _source: Side, target: Side) -> TransferReport:
+    def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the groups of the target's bones."""
         task = self._read_task
         written = task.columns.new & ~task.columns.locked
@@ -110,8 +110,9 @@ class PairedWeightTransfer(Transfer):
         for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
             write_groups(part, wanted, csr_array(result[own]), every=False)
         held = [task.names[number] for number in np.flatnonzero(task.columns.locked)]
-        notes = (f'Locked vertex groups of "{target.name}" were left alone: {listed(held)}.',) if held else ()
-        return TransferReport(counted(len(numbers), "vertex group"), notes)
+        notes = [f'Locked vertex groups of "{target.name}" were left alone: {listed(held)}.'] if held else []
+        notes += pairing_notes(cast("bpy.types.Scene", context.scene), rig_of(source), rig_of(target))
+        return TransferReport(counted(len(numbers), "vertex group"), tuple(notes))
 
     @property
     def _read_task(self) -> _Task:
