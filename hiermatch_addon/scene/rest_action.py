@@ -1,35 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A pose of an armature as an action that is kept, but not played."""
+"""Poses of an armature as actions: how its body stood, and the one in which it is at rest."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
-import bpy
 from mathutils import Matrix
 
 from .armatures import armature_of
-from .motion.action_curves import MADE_FOR, TRANSFORMS, assign_action, lent_action, rotation_channel
+from .motion.action_curves import TRANSFORMS, CurveMaker, assign_action, played_action, rotation_channel
+from .motion.carried_action_io import mark_carried, to_be_replaced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import bpy
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["AS_IT_WAS", "keep_pose", "kept_pose", "pose_bases", "was_kept"]
+__all__ = ["keep_pose", "kept_pose", "make_rest_action", "pose_bases", "was_kept"]
 
-_MARKER = "hiermatch_rest"
-"""Custom property of the actions that were made here: the name of the armature they were made for."""
-
-_KIND = "hiermatch_pose"
-"""Custom property of theirs: which pose of the armature it is, empty for the rest pose of a posed target."""
-
-_KEPT = "hiermatch_kept"
-"""With a kind behind it custom property of armature objects for which such a pose was kept: the action."""
-
-AS_IT_WAS = "as it was"
-"""Kind of the pose in which a target looks as it did before it was brought to another rest pose."""
+_KEPT = "hiermatch_kept as it was"
+"""Custom property of armature objects: the action in which the target looks as before it got another rest pose."""
 
 
 def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.float64]]) -> dict[str, Matrix]:
@@ -64,27 +56,18 @@ def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.flo
     return bases
 
 
-def kept_pose(armature: bpy.types.Object, kind: str = "") -> bpy.types.Action | None:
-    """Find the pose of a kind that was kept for an armature, also if that was renamed since."""
-    kept = cast("Any", armature).get(_property(kind))
-    if kept is not None:
-        return kept
-    for action in bpy.data.actions:
-        found: Any = action
-        if found.get(_MARKER) == armature.name and found.get(_KIND, "") == kind:
-            return action
-    return None
+def kept_pose(armature: bpy.types.Object) -> bpy.types.Action | None:
+    """Find the action in which a target looks as it did before it was brought to another rest pose."""
+    return cast("bpy.types.Action | None", cast("Any", armature).get(_KEPT))
 
 
-def was_kept(armature: bpy.types.Object, kind: str = "") -> bool:
-    """Tell whether a pose of a kind was kept for an armature, also if the action is gone by now."""
-    return _property(kind) in cast("Any", armature) or kept_pose(armature, kind) is not None
+def was_kept(armature: bpy.types.Object) -> bool:
+    """Tell whether there was such an action, also if it is gone by now."""
+    return _KEPT in cast("Any", armature)
 
 
-def keep_pose(
-    armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix], *, show: bool, kind: str = ""
-) -> bpy.types.Action:
-    """Keep a pose as an action of one frame, with a fake user; one that was made before is replaced.
+def keep_pose(armature: bpy.types.Object, name: str, bases: Mapping[str, Matrix]) -> bpy.types.Action:
+    """Keep how a target stood as an action of one frame, with a fake user, under a name; it stays as it is.
 
     Parameters
     ----------
@@ -94,41 +77,61 @@ def keep_pose(
         Name of the action.
     bases : mapping
         The transforms of its bones, from `pose_bases`.
-    show : bool
-        Whether the armature takes the pose; else it stays as it is, with the action that it has.
-    kind : str
-        Which pose it is: one of the same kind is replaced.
 
     Returns
     -------
     bpy.types.Action
         The action.
     """
-    old = kept_pose(armature, kind)
-    if old is not None:
-        bpy.data.actions.remove(old)  # another one of that name is the user's own
-    action: Any = bpy.data.actions.new(name)
-    action.use_fake_user = True
-    action[_MARKER] = action[MADE_FOR] = armature.name
-    action[_KIND] = kind
-    cast("Any", armature)[_property(kind)] = action
-    pose = cast("bpy.types.Pose", armature.pose)
-    with lent_action(armature) as animation:
-        animation.action = action
-        for bone_name, basis in bases.items():
-            bone = pose.bones[bone_name]
-            stood = {channel: list(getattr(bone, channel)) for channel in TRANSFORMS}
-            bone.matrix_basis = basis
-            for channel in ("location", rotation_channel(bone.rotation_mode), "scale"):
-                bone.keyframe_insert(channel, frame=1, group=bone_name)
-            if not show:
-                for channel, value in stood.items():
-                    setattr(bone, channel, value)
-    if show and animation.action is None:
-        assign_action(armature, action)
-    return action
+    maker = CurveMaker(name, armature)
+    _write(maker, armature, bases, show=False)
+    cast("Any", armature)[_KEPT] = maker.action
+    return maker.action
 
 
-def _property(kind: str) -> str:
-    """Return the custom property of an armature object that leads to the pose of a kind."""
-    return f"{_KEPT} {kind}".strip()
+def make_rest_action(
+    armature: bpy.types.Object, bases: Mapping[str, Matrix], *, show: bool
+) -> tuple[bpy.types.Action, list[str]]:
+    """Make an action of one frame in which a posed target is at rest, with a fake user.
+
+    One that was made before is made anew, so that what plays it plays the new one, unless the user has edited it, or
+    made it his own by another name.
+
+    Parameters
+    ----------
+    armature : bpy.types.Object
+        The armature object.
+    bases : mapping
+        The transforms of its bones, from `pose_bases`.
+    show : bool
+        Whether the armature takes the pose; else it stays as it is, with the action that it has.
+
+    Returns
+    -------
+    action : bpy.types.Action
+        The action.
+    notes : list of str
+        What is to be said of the one that was made before.
+    """
+    before, notes = to_be_replaced(armature, None)
+    maker = CurveMaker(before or f"{armature.name} Rest", armature)
+    _write(maker, armature, bases, show=show)
+    mark_carried(maker.action, None)
+    if show and played_action(armature) is None:
+        assign_action(armature, maker.action)
+    return maker.action, notes
+
+
+def _write(maker: CurveMaker, armature: bpy.types.Object, bases: Mapping[str, Matrix], *, show: bool) -> None:
+    """Write a pose into an action, and leave the armature in it if that is to be shown."""
+    bones = cast("bpy.types.Pose", armature.pose).bones
+    for name, basis in bases.items():
+        bone = bones[name]
+        stood = {channel: list(getattr(bone, channel)) for channel in TRANSFORMS}
+        bone.matrix_basis = basis
+        for channel in ("location", rotation_channel(bone.rotation_mode), "scale"):
+            for index, value in enumerate(getattr(bone, channel)):
+                maker.curve(name, channel, index).keyframe_points.insert(1, value)
+        if not show:
+            for channel, values in stood.items():
+                setattr(bone, channel, values)

@@ -16,7 +16,7 @@ from ..scene.armature_copy import move_joints
 from ..scene.armatures import armature_of, bone_weights, find_armature
 from ..scene.binding import made_rig, worn_with
 from ..scene.posing.rest_mesh_io import bring_to_rest, plays_actions, why_not_to_rest
-from ..scene.rest_action import AS_IT_WAS, keep_pose, pose_bases, was_kept
+from ..scene.rest_action import keep_pose, pose_bases, was_kept
 from ..storage.halves import moved_by_us
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ class RestLikeSource(Transfer):
             return TransferReport(
                 "", (f"The rest pose stays as it was, and the source's actions do not play as they should: {reason}.",)
             )
-        first = not was_kept(armature, AS_IT_WAS)
+        first = not was_kept(armature)
         if first:  # later it has that size already
             _resize(context, armature, self._ratio)
         move_joints(context, armature, names, at_rest(placed, rest))
@@ -101,7 +101,7 @@ class RestLikeSource(Transfer):
             bring_to_rest(target, weights, rest)
         remarks, notes = [], []
         if first:
-            action = keep_pose(armature, f"{target.name} As It Was", self._bases(armature), show=False, kind=AS_IT_WAS)
+            action = keep_pose(armature, f"{target.name} As It Was", self._bases(armature))
             remarks.append(
                 f'"{target.name}" has the rest pose of "{source.name}" now, in which the actions of "{source.name}" '
                 f'play. How it stood is kept as the action "{action.name}".'

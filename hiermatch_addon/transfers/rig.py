@@ -21,7 +21,7 @@ from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
 from ..scene.pair import check_writable
 from ..scene.posing.exercise import end_exercise, is_exercising
-from ..scene.rest_action import keep_pose, pose_bases
+from ..scene.rest_action import make_rest_action, pose_bases
 
 if TYPE_CHECKING:
     import bpy
@@ -192,7 +192,9 @@ class RigTransfer(Transfer):
         present = armature_of(armature).bones
         wanted = {name: move for name, move in zip(self.names, moves, strict=True) if name in present}
         bases = pose_bases(armature, wanted)
-        return keep_pose(armature, f"{armature.name} Rest", bases, show=self._settings.rest_shown).name
+        action, notes = make_rest_action(armature, bases, show=self._settings.rest_shown)
+        self._notes += notes
+        return action.name
 
 
 def _counterparts(

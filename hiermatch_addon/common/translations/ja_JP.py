@@ -1246,7 +1246,7 @@ MESSAGES: Final[dict[str, str]] = {
         '自動キー挿入はキーを打ちませんでした: "{0}"が別のファイルのアクションを再生しているためです。ローカル化'
         "するか、別のアクションを再生させてください。"
     ),
-    '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
+    '"{0}" was edited since it had been made. The edited one is kept as "{1}".': (
         "「{0}」は移された後に編集されていました。編集されたものは「{1}」として残してあります。"
     ),
     'Actions that move only the object "{0}", and none of its bones, were left out: {1}.': (

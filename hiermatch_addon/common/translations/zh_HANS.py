@@ -1032,7 +1032,7 @@ MESSAGES: Final[dict[str, str]] = {
     'Auto Keying set no keys: "{0}" plays an action of another file. Make it local, or let it play another one.': (
         '自动插帧没有插入关键帧："{0}" 播放的动作属于另一个文件。请将其本地化，或让它播放另一个动作。'
     ),
-    '"{0}" was edited since it had been carried over. The edited one is kept as "{1}".': (
+    '"{0}" was edited since it had been made. The edited one is kept as "{1}".': (
         "“{0}”在传递之后被编辑过。编辑过的版本保留为“{1}”。"
     ),
     'Actions that move only the object "{0}", and none of its bones, were left out: {1}.': (

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -23,7 +22,6 @@ __all__ = [
     "bone_curves",
     "every_curve",
     "frame_range",
-    "lent_action",
     "moves_bones",
     "moves_object_only",
     "object_curves",
@@ -210,27 +208,6 @@ def _is_heard(curve: Any) -> bool:  # noqa: ANN401 - Blender's types differ
     return not curve.mute and not (curve.group is not None and curve.group.mute)
 
 
-@contextmanager
-def lent_action(armature: bpy.types.Object) -> Iterator[Any]:
-    """Lend the animation of an armature, with an action that can be changed, and give it back as it was.
-
-    While a strip is tweaked in the NLA editor, its action is held.
-    """
-    animation: Any = armature.animation_data or armature.animation_data_create()
-    tweaked = animation.use_tweak_mode
-    if tweaked:
-        animation.use_tweak_mode = False
-    before = animation.action, getattr(animation, "action_slot", None)
-    try:
-        yield animation
-    finally:
-        animation.action = before[0]
-        if before[0] is not None and before[1] is not None:
-            animation.action_slot = before[1]
-        if tweaked:
-            animation.use_tweak_mode = True
-
-
 def assign_action(armature: bpy.types.Object, action: bpy.types.Action) -> None:
     """Let an armature play an action; the one that it played before is kept in the file."""
     animation: Any = armature.animation_data or armature.animation_data_create()
@@ -251,11 +228,13 @@ class CurveMaker:
         One that is made anew in its place, so that whatever plays it plays the new one; or the name of another one.
     armature : bpy.types.Object
         Whom it is for.
-    model : bpy.types.Action
+    model : bpy.types.Action, optional
         Whose frame range and cycle it takes over.
     """
 
-    def __init__(self, before: bpy.types.Action | str, armature: bpy.types.Object, model: bpy.types.Action) -> None:
+    def __init__(
+        self, before: bpy.types.Action | str, armature: bpy.types.Object, model: bpy.types.Action | None = None
+    ) -> None:
         made: Any = bpy.data.actions.new(before) if isinstance(before, str) else before
         made.use_fake_user = True
         made[MADE_FOR] = armature.name
@@ -269,7 +248,7 @@ class CurveMaker:
             self._bag = strip.channelbag(slot, ensure=True)
         else:
             _clear(made)
-        for option in ("use_frame_range", "frame_start", "frame_end", "use_cyclic"):
+        for option in ("use_frame_range", "frame_start", "frame_end", "use_cyclic") if model is not None else ():
             setattr(made, option, getattr(model, option))
 
     def curve(self, bone: str, channel: str, index: int) -> Any:  # noqa: ANN401 - Blender's types differ

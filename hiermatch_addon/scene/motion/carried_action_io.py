@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Actions that were carried over: from which action, for which rig, and whether they were edited since."""
+"""Actions that were made for rigs: from which action of another one, if any, and whether they were edited since."""
 
 from __future__ import annotations
 
@@ -16,10 +16,21 @@ from .action_curves import MADE_FOR, every_curve, playing
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["carried_before", "mark_carried", "put_aside", "users_beside", "was_carried", "was_edited"]
+__all__ = [
+    "carried_before",
+    "mark_carried",
+    "put_aside",
+    "to_be_replaced",
+    "users_beside",
+    "was_carried",
+    "was_edited",
+]
 
 _MODEL: Final = "hiermatch_carried"
-"""Custom property of actions that were made from those of other rigs: the name of that action."""
+"""Custom property of actions that were made from those of other rigs: the name of that action.
+
+Of the pose in which a rig looks as the source does at rest it is empty.
+"""
 
 _NAMED: Final = "hiermatch_carried_name"
 """Custom property of such an action: what it was called when it was made; under another name it is the user's own."""
@@ -36,17 +47,17 @@ _ENUMS: Final = ("interpolation", "easing", "handle_left_type", "handle_right_ty
 
 def was_carried(action: bpy.types.Action) -> bool:
     """Tell whether an action was made from that of another rig."""
-    return _MODEL in cast("Any", action)
+    return bool(cast("Any", action).get(_MODEL))
 
 
-def mark_carried(action: bpy.types.Action, model: bpy.types.Action) -> None:
-    """Say that an action is now as it was made from another one."""
+def mark_carried(action: bpy.types.Action, model: bpy.types.Action | None) -> None:
+    """Say that an action is now as it was made from another one, or, without one, as the rest pose."""
     mine: Any = action
-    mine[_MODEL], mine[_NAMED], mine[_STATE] = model.name, action.name, _state(action)
+    mine[_MODEL], mine[_NAMED], mine[_STATE] = _name(model), action.name, _state(action)
 
 
-def carried_before(armature: bpy.types.Object, model: bpy.types.Action) -> bpy.types.Action | None:
-    """Find the action that was made for an armature from another action, and that nothing else uses.
+def carried_before(armature: bpy.types.Object, model: bpy.types.Action | None) -> bpy.types.Action | None:
+    """Find the action that was made for an armature from another action, or as its rest pose, and nothing else uses.
 
     One that was renamed is the user's own.  A rig that was renamed since still plays what was made for it.
     """
@@ -55,10 +66,29 @@ def carried_before(armature: bpy.types.Object, model: bpy.types.Action) -> bpy.t
         mine: Any = action
         owner = mine.get(MADE_FOR, "")
         is_own = owner == armature.name or (owner not in bpy.data.objects and action.name in played)
-        found = is_own and mine.get(_MODEL) == model.name
+        found = is_own and mine.get(_MODEL) == _name(model)
         if found and mine.get(_NAMED) == action.name and action.library is None and not users_beside(action, armature):
             return action
     return None
+
+
+def to_be_replaced(
+    armature: bpy.types.Object, model: bpy.types.Action | None
+) -> tuple[bpy.types.Action | None, list[str]]:
+    """Find the action that was made before, as `carried_before`, unless it was edited: that one is put aside.
+
+    Returns
+    -------
+    action : bpy.types.Action or None
+        The one to make anew in its place.
+    notes : list of str
+        What is to be said.
+    """
+    before = carried_before(armature, model)
+    if before is None or not was_edited(before):
+        return before, []
+    name = before.name
+    return None, [f'"{name}" was edited since it had been made. The edited one is kept as "{put_aside(before)}".']
 
 
 def users_beside(action: bpy.types.Action, armature: bpy.types.Object) -> list[str]:
@@ -68,7 +98,7 @@ def users_beside(action: bpy.types.Action, armature: bpy.types.Object) -> list[s
 
 
 def was_edited(action: bpy.types.Action) -> bool:
-    """Tell whether an action was edited since it was carried over."""
+    """Tell whether an action was edited since it was made."""
     return cast("Any", action)[_STATE] != _state(action)
 
 
@@ -79,6 +109,11 @@ def put_aside(action: bpy.types.Action) -> str:
         del mine[mark]
     action.name = shortened(action.name, LONGEST_ID, " (edited)")
     return action.name
+
+
+def _name(model: bpy.types.Action | None) -> str:
+    """Return what an action says that it was made from."""
+    return "" if model is None else model.name
 
 
 def _state(action: bpy.types.Action) -> str:

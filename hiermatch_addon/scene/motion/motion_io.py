@@ -22,7 +22,7 @@ from .action_curves import (
     rotation_channel,
     slot_for,
 )
-from .carried_action_io import carried_before, mark_carried, put_aside, was_carried, was_edited
+from .carried_action_io import mark_carried, to_be_replaced, was_carried
 from .own_scene import own_scene
 from .rigs import own_skeleton, rest_matrices
 
@@ -262,7 +262,7 @@ def _motion_of(armature: bpy.types.Object, posed: NDArray[np.float64]) -> Motion
 
 def write_action(
     armature: bpy.types.Object, model: bpy.types.Action, keys: Sequence[BoneKeys], *, assign: bool
-) -> tuple[bpy.types.Action, str]:
+) -> tuple[bpy.types.Action, list[str]]:
     """Make an action of keys, named after an armature and ranged like another one.
 
     What was made from that one before is made anew in its place: strips, too, play the new one. If it was edited since
@@ -286,13 +286,11 @@ def write_action(
     -------
     action : bpy.types.Action
         The action.
-    aside : str
-        What the one that was made before is called now, if it was edited and is kept; else empty.
+    notes : list of str
+        What is to be said of the one that was made before.
     """
-    played, before, aside = _left_by(armature), carried_before(armature, model), ""
-    if before is not None and was_edited(before):
-        aside = put_aside(before)
-    maker = CurveMaker(before if before is not None and not aside else f"{model.name} {armature.name}", armature, model)
+    played, (before, notes) = _left_by(armature), to_be_replaced(armature, model)
+    maker = CurveMaker(before or f"{model.name} {armature.name}", armature, model)
     for channel in keys:
         for index in range(channel.values.shape[1]):
             _write_curve(maker.curve(channel.bone, channel.channel, index), channel, index)
@@ -301,7 +299,7 @@ def write_action(
         _put_to_rest(armature, played - {(each.bone, each.channel) for each in keys})
     if assign:
         assign_action(armature, maker.action)
-    return maker.action, aside
+    return maker.action, notes
 
 
 def _left_by(armature: bpy.types.Object) -> set[tuple[str, str]]:

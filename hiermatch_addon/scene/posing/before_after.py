@@ -10,7 +10,7 @@ from ...common.access import mesh_of
 from ..armatures import moving_armatures
 from ..binding import is_made
 from ..character import parts_of
-from ..rest_action import AS_IT_WAS, kept_pose
+from ..rest_action import kept_pose
 from .pose_state import bring_back, is_aside, put_aside
 
 if TYPE_CHECKING:
@@ -40,10 +40,10 @@ def show_before(side: Side, source: Side | None) -> bool:
         Whether there was anything to hide.
     """
     carried = set() if source is None else {key.name for part in parts_of(source) for key in _keys(part)}
-    posed = [armature for armature in moving_armatures(side) if is_made(armature) and kept_pose(armature, AS_IT_WAS)]
+    posed = [armature for armature in moving_armatures(side) if is_made(armature) and kept_pose(armature)]
     for armature in posed:  # without the rig they would be seen at rest, which is not how they stood
         put_aside(armature, _WHY)
-        cast("Any", armature.animation_data).action = kept_pose(armature, AS_IT_WAS)
+        cast("Any", armature.animation_data).action = kept_pose(armature)
     hidden = [_hide(part, carried, posed) for part in parts_of(side)]  # all of them, not the first only
     return any(hidden)
 

@@ -208,11 +208,8 @@ class MotionJob(SteppedJob):
     ) -> bpy.types.Action:
         """Write a target's action, and note what is kept of one that was made before."""
         keys, assign = self._found[rig.session_uid, action.name], self._plan.assign and alone
-        made, aside = write_action(rig, action, keys, assign=assign)
-        if aside:
-            notes.append(
-                f'"{made.name}" was edited since it had been carried over. The edited one is kept as "{aside}".'
-            )
+        made, kept = write_action(rig, action, keys, assign=assign)
+        notes += kept
         return made
 
     def _rigs(self) -> list[bpy.types.Object]:

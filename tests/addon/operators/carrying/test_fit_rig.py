@@ -12,10 +12,12 @@ from hiermatch.hiermatch_addon.scene.armatures import find_armature, moving_arma
 from hiermatch.hiermatch_addon.scene.binding import bind
 from hiermatch.hiermatch_addon.scene.character import side_of
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
+from hiermatch.hiermatch_addon.scene.motion.action_curves import played_action
 from hiermatch.hiermatch_addon.transfers.options.rig import RigSettings
 from hiermatch.hiermatch_addon.transfers.rig import RigTransfer
 from mathutils import Matrix
 
+from tests.addon.motions import curves_of
 from tests.addon.rigs import CONTROLS, POSE, add_mesh, add_rigged, add_target, pose, true_passage
 from tests.addon.scene.test_armatures import IMPORTED
 from tests.addon.scenes import add_blob, localised
@@ -468,8 +470,8 @@ def test_the_rest_pose_undoes_the_pose(show):
     assert action.name in report.done
     if not show:
         np.testing.assert_allclose(shown(target), before, atol=1e-5)
-        assert made.animation_data.action is None
-        made.animation_data.action = action
+        assert played_action(made) is None
+        made.animation_data_create().action = action
         if hasattr(action, "slots"):
             made.animation_data.action_slot = action.slots[0]
         bpy.context.scene.frame_set(1)
@@ -481,6 +483,31 @@ def test_the_rest_pose_undoes_the_pose(show):
     for name in POSE:
         at = made.matrix_world.to_3x3() @ made.pose.bones[name].matrix.to_3x3()
         assert (at.inverted() @ armature.data.bones[name].matrix_local.to_3x3()).to_quaternion().angle < 0.02
+
+
+@pytest.mark.parametrize("what", ["left", "renamed", "edited", "edited and renamed"])
+def test_a_rest_pose_that_the_user_made_his_own_is_not_replaced(what):
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    add_weights(source, target)
+    made, _ = fit(source, target, rest=True)
+    first = bpy.data.actions["Target Rig Rest"]
+    keys = {path: len(curve.keyframe_points) for path, curve in curves_of(first).items()}
+    strip = made.animation_data_create().nla_tracks.new().strips.new("Idle", 1, first)
+    if "edited" in what:
+        next(iter(curves_of(first).values())).keyframe_points.insert(40, 0.5)
+    if "renamed" in what:
+        first.name = "My Idle"
+    edited = sum(len(curve.keyframe_points) for curve in curves_of(first).values())
+    _, report = fit(source, target, rest=True)
+    names = {"left": "Target Rig Rest", "edited": "Target Rig Rest (edited)"}
+    assert strip.action == first
+    assert first.name == names.get(what, "My Idle")
+    assert sum(len(curve.keyframe_points) for curve in curves_of(first).values()) == edited
+    assert set(bpy.data.actions) == {first, bpy.data.actions["Target Rig Rest"]}
+    now = curves_of(bpy.data.actions["Target Rig Rest"])
+    assert {path: len(curve.keyframe_points) for path, curve in now.items()} == keys
+    assert any('is kept as "Target Rig Rest (edited)"' in note for note in report.notes) == (what == "edited")
 
 
 def test_no_rest_pose_is_made_of_a_body_at_rest():

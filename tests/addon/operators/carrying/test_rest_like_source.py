@@ -10,7 +10,7 @@ from hiermatch.engine.runtime.progress import run
 from hiermatch.hiermatch_addon.common.errors import NothingToCarryError
 from hiermatch.hiermatch_addon.scene.armature_copy import copy_to
 from hiermatch.hiermatch_addon.scene.armatures import find_armature
-from hiermatch.hiermatch_addon.scene.rest_action import AS_IT_WAS, kept_pose, was_kept
+from hiermatch.hiermatch_addon.scene.rest_action import kept_pose, was_kept
 from hiermatch.hiermatch_addon.transfers.options.rig import RigSettings
 from hiermatch.hiermatch_addon.transfers.rest_like_source import RestLikeSource
 from hiermatch.hiermatch_addon.transfers.rig import RigTransfer
@@ -137,7 +137,7 @@ def test_how_the_target_stood_is_kept(pair):
     assert report.remarks
     assert np.linalg.norm(own(target) - stood, axis=1).max() > 0.1
     assert np.allclose(target.matrix_world, place, atol=1e-5)
-    play(made, kept_pose(made, AS_IT_WAS))
+    play(made, kept_pose(made))
     np.testing.assert_allclose(shown(target), stood, atol=2e-4 * np.ptp(stood, axis=0).max())
     target.data.shape_keys.key_blocks["Swell"].value = 1.0
     grown = shown(target)
@@ -154,7 +154,7 @@ def test_a_second_run_keeps_the_first_pose(pair):
     assert again == made
     np.testing.assert_allclose(own(target), rest, atol=0.03 * np.ptp(stood, axis=0).max())
     assert np.allclose(made.matrix_world.to_scale(), scale)
-    play(made, kept_pose(made, AS_IT_WAS))
+    play(made, kept_pose(made))
     np.testing.assert_allclose(shown(target), stood, atol=0.05 * np.ptp(stood, axis=0).max())
 
 
@@ -166,15 +166,15 @@ def test_a_second_run_knows_the_rig_again(pair, spoil):
     if spoil == "renamed":
         made.name = made.data.name = "Mine"
     else:
-        bpy.data.actions.remove(kept_pose(made, AS_IT_WAS))
+        bpy.data.actions.remove(kept_pose(made))
     again, (_, report) = fit(source, target)
     assert again == made
     assert np.allclose(made.matrix_world.to_scale(), scale)  # it has grown with the body once
     assert not report.remarks
     assert set(bpy.data.actions.keys()) <= actions
     copied = copy_to(bpy.context, made, "Other", target)
-    assert kept_pose(made, AS_IT_WAS) is None or spoil == "renamed"
-    assert not was_kept(copied, AS_IT_WAS)
+    assert kept_pose(made) is None or spoil == "renamed"
+    assert not was_kept(copied)
 
 
 @pytest.mark.parametrize(("settings", "wanted"), [({}, False), ({"like_source": "ON"}, True)])

@@ -385,7 +385,7 @@ def test_what_was_carried_and_edited_since_is_kept(edit):
     assert (made.name, target.animation_data.action.name) == ("Wave B (edited)", "Wave B")
     assert curves_values(made) == before
     assert target.animation_data.nla_tracks[0].strips[0].action == made
-    said = '"Wave B" was edited since it had been carried over. The edited one is kept as "Wave B (edited)".'
+    said = '"Wave B" was edited since it had been made. The edited one is kept as "Wave B (edited)".'
     assert said in bpy.context.scene.hiermatch_retarget.report.notes
     carry(source="A", target="B")
     assert set(bpy.data.actions.keys()) == {"Wave", "Wave B", "Wave B (edited)"}
