@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["without_broken"]
+__all__ = ["leave_out_broken", "without_broken"]
 
 
 def without_broken(values: dict[str, NDArray[Any]], source: Side) -> list[str]:
@@ -24,16 +24,20 @@ def without_broken(values: dict[str, NDArray[Any]], source: Side) -> list[str]:
     Raises
     ------
     ObjectError
-        If none would be left.
+        If none is left.
     """
+    notes = leave_out_broken(values, source)
+    if notes and not values:
+        raise ObjectError(notes[0])
+    return notes
+
+
+def leave_out_broken(values: dict[str, NDArray[Any]], side: Side) -> list[str]:
+    """Take out of named arrays of a side's those with values that are not finite; return what is to be said of it."""
     broken = [name for name, held in values.items() if not np.isfinite(held).all()]
-    if not broken:
-        return []
-    said = (
-        f'{listed(broken)} of "{source.name}" was left out, because of values that are not finite numbers. Repair them.'
-    )
-    if len(broken) == len(values):
-        raise ObjectError(said)
     for name in broken:
         del values[name]
-    return [said]
+    said = (
+        f'{listed(broken)} of "{side.name}" was left out, because of values that are not finite numbers. Repair them.'
+    )
+    return [said] if broken else []

@@ -34,9 +34,12 @@ from ..scene.shape_key_io import (
     shape_key_names,
 )
 from ..storage.written_names import written_names
+from .finite_values import leave_out_broken
 from .wrap import wrap_key_name
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from ...engine import Steps
@@ -84,15 +87,16 @@ class SymmetriseJob(SteppedJob):
             self._parts.append(_Keys(context, obj, create=settings.create))
         if settings.colors:
             self._parts.append(_Colors(obj))
+        self._notes = [note for part in self._parts for note in part.notes]
         if not any(part.names for part in self._parts):
-            raise ObjectError(
+            nothing = (
                 f'"{obj.name}" carries nothing of what is to be made symmetric: no vertex groups, shape keys or color '
                 "attributes. Choose another object, or turn more of them on."
             )
+            raise ObjectError(self._notes[0] if self._notes else nothing)
         self._mesh = read_mesh(obj, context.evaluated_depsgraph_get(), use_modifiers=False)
         self._hints = _hints(obj) * (1.0 if settings.side == "LEFT" else -1.0)
         self.seconds = 0.0
-        self._note = ""
         super().__init__()
 
     def finish(self, context: bpy.types.Context) -> TransferReport:
@@ -108,7 +112,7 @@ class SymmetriseJob(SteppedJob):
             raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
         done = [part.write(obj) for part in self._parts if part.names]
         self.seconds = time.perf_counter() - self._start
-        return TransferReport(", ".join(done), tuple(filter(None, [self._note])))
+        return TransferReport(", ".join(done), tuple(filter(None, self._notes)))
 
     def _check(self, view_layer: bpy.types.ViewLayer) -> None:
         self._object(view_layer)
@@ -116,7 +120,7 @@ class SymmetriseJob(SteppedJob):
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
         self.found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
-        self._note = asymmetry_note(self._name, self.found.quality)
+        self._notes.append(asymmetry_note(self._name, self.found.quality))
         yield Progress(0.9, "Telling the sides apart")
         telling = called_steps(Symmetriser.of, self._mesh, self.found.source_to_target, self._hints)
         symmetriser = yield from within(telling, 0.9, 0.95)
@@ -136,6 +140,8 @@ class SymmetriseJob(SteppedJob):
 
 class _Weights:
     """The weights of the vertex groups that are neither locked nor a match's, nor without a partner."""
+
+    notes: Sequence[str] = ()
 
     def __init__(self, obj: bpy.types.Object, *, create: bool) -> None:
         ours = written_names(obj)
@@ -167,9 +173,12 @@ class _Keys:
     def __init__(self, context: bpy.types.Context, obj: bpy.types.Object, *, create: bool) -> None:
         wraps, locked = wrap_key_name(""), locked_keys(obj)
         self.names = [name for name in shape_key_names(obj) if not (name.startswith(wraps) or name in locked)]
+        self.notes: Sequence[str] = ()
         if not self.names:
             return
         check_keys_writable(obj, self.names)
+        moves = dict(zip(self.names, read_offsets(obj, self.names, from_reference=()), strict=True))
+        self.notes, self.names = leave_out_broken(moves, obj), list(moves)
         blocks = cast("bpy.types.Key", keys_of(obj)).key_blocks
         settings = [KeySettings.of(blocks[name], ()) for name in self.names]
         present = {key.name for key in blocks}
@@ -205,27 +214,30 @@ class _Colors:
 
     def __init__(self, obj: bpy.types.Object) -> None:
         mesh, ours = mesh_of(obj), written_names(obj)
-        self.names = [attribute.name for attribute in mesh.color_attributes if attribute.name not in ours]
+        names = [attribute.name for attribute in mesh.color_attributes if attribute.name not in ours]
         self._corners = corner_vertices(mesh)
-        self._values = {name: _colors(mesh, name) for name in self.names}
+        self._values = {name: read_attribute(mesh, name).astype(np.float64) for name in names}
+        self.notes = leave_out_broken(self._values, obj)
+        self.names = list(self._values)
+        self._domains = {name: attribute_layouts(mesh)[name].domain for name in self.names}
 
     def compute(self, symmetriser: Symmetriser) -> None:
         """Make them symmetric; what is mirrored to the corners of a vertex is the mean there."""
         n = len(symmetriser.own)
-        for name, (domain, values) in self._values.items():
-            if domain == "POINT":
-                made = symmetriser.values(values)
+        for name, values in self._values.items():
+            if self._domains[name] == "POINT":
+                self._values[name] = symmetriser.values(values)
             else:
                 counts = np.maximum(np.bincount(self._corners, minlength=n), 1)[:, None]
                 sums = np.stack([np.bincount(self._corners, axis, n) for axis in values.T], axis=1)
                 own = symmetriser.own[self._corners, None]
-                made = own * values + (1 - own) * symmetriser.mirror.transfer(sums / counts)[self._corners]
-            self._values[name] = (domain, made)
+                mirrored = symmetriser.mirror.transfer(sums / counts)[self._corners]
+                self._values[name] = own * values + (1 - own) * mirrored
 
     def write(self, obj: bpy.types.Object) -> str:
         """Write them."""
         mesh = mesh_of(obj)
-        for name, (_, values) in self._values.items():
+        for name, values in self._values.items():
             write_attribute(mesh, attribute_layouts(mesh)[name], values)
         mesh.update()
         return counted(len(self.names), "color attribute")
@@ -242,11 +254,6 @@ def _side_by_side(columns: list[csr_array], rows: int) -> csr_array:
     row = np.concatenate([np.empty(0, np.int64), *(entry.row for entry in entries)])
     number = np.repeat(np.arange(len(entries)), [entry.nnz for entry in entries])
     return csr_array((data, (row, number)), shape=(rows, len(columns)))
-
-
-def _colors(mesh: bpy.types.Mesh, name: str) -> tuple[str, NDArray[np.float64]]:
-    """Read the domain of a color attribute and its colours (k, 4)."""
-    return attribute_layouts(mesh)[name].domain, read_attribute(mesh, name).astype(np.float64)
 
 
 def _flipped_group(settings: KeySettings) -> str:

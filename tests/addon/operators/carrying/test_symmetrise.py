@@ -178,6 +178,29 @@ def test_colors_of_vertices_and_corners(body):
         assert np.abs(flat.reshape(-1, 4) - [1, 0.5, 0, 1])[off_middle].max() < 0.1
 
 
+def test_what_is_no_finite_number_is_left_out_and_does_not_spread(body, capfd):
+    obj, rest = body
+    add_legs(obj, rest)
+    raised = 0.1 * (rest[:, 1:2] > 0) * [0, 0, 1]
+    add_key(obj, "Lift", np.where(np.arange(len(rest))[:, None] == np.argmax(rest[:, 1]), np.nan, raised))
+    add_key(obj, "Both", raised)
+    add_key(obj, "On Lift", raised).relative_key = obj.data.shape_keys.key_blocks["Lift"]
+    color = obj.data.color_attributes.new("Tint", "FLOAT_COLOR", "POINT")
+    color.data[3].color[0] = np.nan
+    assert symmetrise() == {"FINISHED"}
+    assert np.isnan(offsets_of(obj, "Lift")).any(axis=1).sum() == 1
+    assert np.isfinite(offsets_of(obj, "Both")).all()
+    assert np.isfinite(offsets_of(obj, "On Lift")).all()
+    assert offsets_of(obj, "Both")[rest[:, 1] < -0.1].max() > 0.05
+    assert sum(np.isnan(point.color).any() for point in color.data) == 1
+    notes = capfd.readouterr().out
+    assert '"Lift", "On Lift" of "Body" was left out' in notes
+    assert '"Tint" of "Body" was left out' in notes
+    obj.shape_key_remove(obj.data.shape_keys.key_blocks["Both"])
+    with pytest.raises(RuntimeError, match='"Lift", "On Lift" of "Body" was left out'):
+        symmetrise(symmetrise_weights=False, symmetrise_colors=False)
+
+
 def test_bad_input_changes_nothing(body):
     obj, rest = body
     for words, prepare in (
