@@ -51,8 +51,8 @@ def read_weights(obj: bpy.types.Object) -> csr_array:
     Returns
     -------
     (n, g) csr_array of float
-        For each vertex and each of `obj.vertex_groups`, in their order, the weight; without entries that are zero, or
-        that some file or script has left as no number.
+        For each vertex and each of `obj.vertex_groups`, in their order, the weight, 0 to 1, whatever some file or
+        script has left there; without entries that are zero, or no number.
     """
     weights = _stored(obj)[:, : len(obj.vertex_groups)]
     weights.data[np.isnan(weights.data)] = 0
@@ -111,7 +111,7 @@ def write_weights(obj: bpy.types.Object, names: Sequence[str], weights: csr_arra
 
 
 def _stored(obj: bpy.types.Object) -> csr_array:
-    """Read what is stored, (n, g or more): entries may be zero, or, after scripts, of groups that are not there."""
+    """Read what is stored, (n, g or more), from 0 to 1: entries may be zero, no number, or of groups that are gone."""
     mesh = mesh_of(obj)
     groups: list[Any] = []
     weights: list[float] = []
@@ -124,7 +124,8 @@ def _stored(obj: bpy.types.Object) -> csr_array:
             weights.append(element.weight)
         starts.append(len(groups))
     width = max(len(obj.vertex_groups), max(groups, default=-1) + 1)
-    stored = csr_array((np.array(weights, np.float64), np.array(groups, np.int64), starts), (len(starts) - 1, width))
+    held = np.clip(np.array(weights, np.float64), 0, 1)
+    stored = csr_array((held, np.array(groups, np.int64), starts), (len(starts) - 1, width))
     stored.sort_indices()
     return stored
 

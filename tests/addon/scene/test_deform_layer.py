@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.scene.deform_layer import check_weights_writable, read_weights, write_weights
+from hiermatch.hiermatch_addon.scene.deform_layer import check_weights_writable, read_group, read_weights, write_weights
 from scipy.sparse import csr_array
 
 from tests.addon.scenes import add_blob, mesh_snapshot, weights_of
@@ -45,6 +45,17 @@ def test_weights_that_are_no_numbers_count_as_none(blob):
     assert np.isfinite(read.data).all()
     assert (read.toarray() != weights.toarray()).sum() == 1
     write_weights(blob, list("ab"), read)
+    np.testing.assert_array_equal(read_weights(blob).toarray(), read.toarray())
+
+
+@pytest.mark.parametrize(("stored", "counts"), [(1.5, 1), (float("inf"), 1), (-0.5, 0), (float("-inf"), 0)])
+def test_weights_beyond_their_range_count_as_its_ends(blob, stored, counts):
+    write_weights(blob, ["a"], csr_array(np.full((len(blob.data.vertices), 1), 0.5)))
+    blob.data.vertices[3].groups.foreach_set("weight", np.array([stored], np.float32))
+    read = read_weights(blob)
+    assert read[3, 0] == counts
+    assert read_group(blob, "a")[3] == counts
+    write_weights(blob, ["a"], read)
     np.testing.assert_array_equal(read_weights(blob).toarray(), read.toarray())
 
 
