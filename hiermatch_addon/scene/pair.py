@@ -29,6 +29,7 @@ __all__ = [
     "check_writable",
     "find_pair",
     "is_own",
+    "is_shared",
     "lacking_meshes",
     "left_out_note",
     "name_of",
@@ -426,6 +427,12 @@ def check_writable(obj: bpy.types.Object) -> None:
         )
 
 
+def is_shared(obj: bpy.types.Object) -> bool:
+    """Tell whether other objects have the same mesh."""
+    mesh = mesh_of(obj)
+    return mesh.users - int(mesh.use_fake_user) > 1
+
+
 def check_own_mesh(obj: bpy.types.Object) -> None:
     """Make sure that no other object has the same mesh.
 
@@ -434,8 +441,7 @@ def check_own_mesh(obj: bpy.types.Object) -> None:
     SharedMeshError
         If one has.
     """
-    mesh = mesh_of(obj)
-    if mesh.users - int(mesh.use_fake_user) > 1:
+    if is_shared(obj):
         raise SharedMeshError(
             f'"{obj.name}" shares its mesh with other objects, which would change with it. Give it its own mesh first '
             "(Object > Relations > Make Single User > Object & Data)."

@@ -12,6 +12,7 @@ from ....engine import unposed
 from ...common.access import mesh_of
 from ..armatures import moving_armatures
 from ..character import parts_of, vertex_ranges
+from ..pair import is_shared
 from .pose_state import own_action
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def why_not_to_rest(side: Side, armature: bpy.types.Object, weights: csr_array) 
         return f'"{side.name}" is moved by the armature "{others[0]}" as well'
     if weights.nnz == 0:
         return f'"{side.name}" has no weights for the bones of "{armature.name}"'
-    shared = [part.name for part in parts_of(side) if mesh_of(part).users > 1]
+    shared = [part.name for part in parts_of(side) if is_shared(part)]
     if shared:
         return f'"{shared[0]}" shares its mesh data with other objects'
     return ""

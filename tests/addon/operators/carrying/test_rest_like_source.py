@@ -211,6 +211,14 @@ def test_what_cannot_be_brought_to_rest_stays_and_is_said(pair):
     np.testing.assert_allclose(shown(target), stood, atol=1e-4)
 
 
+def test_a_mesh_with_a_fake_user_is_shared_with_nobody(pair):
+    source, target, _ = pair
+    target.data.use_fake_user = True
+    _, (_, report) = fit(source, target)
+    assert report.done
+    assert not report.notes
+
+
 def test_an_armature_at_another_scale_is_no_matter(pair):
     source, target, action = pair
     find_armature(source).matrix_world = Matrix.Scale(0.01, 4) @ find_armature(source).matrix_world
