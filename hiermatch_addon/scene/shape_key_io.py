@@ -55,7 +55,7 @@ class KeySettings:
     name : str
         Its name.
     relative_to : str
-        Name of the key of the same set that it is relative to; empty if that is the reference key.
+        Name of the key of the same set that it is relative to, itself if it moves nothing; empty for the reference key.
     value, slider_min, slider_max : float
         How far it is turned on, and between which bounds.
     mute : bool
@@ -84,7 +84,7 @@ class KeySettings:
         relative = key.relative_key
         return cls(
             name=key.name,
-            relative_to=relative.name if relative != key and relative.name in names else "",
+            relative_to=relative.name if relative.name in names else "",
             value=key.value,
             slider_min=key.slider_min,
             slider_max=key.slider_max,
@@ -165,7 +165,7 @@ def read_offsets(obj: bpy.types.Object, names: Sequence[str], *, from_reference:
     for number, name in enumerate(names):
         key = keys.key_blocks[name]
         base = key.relative_key
-        known = base in (keys.reference_key, key) or base.name in from_reference
+        known = base == keys.reference_key or base.name in from_reference
         offsets[number] = key_positions(key) - (reference if known else key_positions(base))
     return offsets
 

@@ -152,7 +152,7 @@ class ShapeKeyTransfer(Transfer):
             moved = [
                 key
                 for number, key in enumerate(self._keys)
-                if key.name in written and (all_of_them or carried[number].any())
+                if key.name in written and (all_of_them or carried[number].any() or key.name in shape_key_names(part))
             ]
             if not moved:
                 continue

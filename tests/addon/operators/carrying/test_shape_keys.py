@@ -6,17 +6,30 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import fit_rig
+from hiermatch.engine import ClosestPoints, SurfaceMap, fit_rig, run
 from hiermatch.hiermatch_addon.jobs.transfer import Passage
 from hiermatch.hiermatch_addon.scene.armatures import read_rig
+from hiermatch.hiermatch_addon.scene.character import joined, read_surface
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.storage.stored_map import find_maps
+from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
 from hiermatch.hiermatch_addon.transfers.options.shape_keys import ShapeKeySettings
 from hiermatch.hiermatch_addon.transfers.shape_keys import ShapeKeyTransfer
 from mathutils import Matrix
 
-from tests.addon.rigs import add_rigged, add_rigged_pair, add_target, find_armature, pose, true_passage, unpose
+from tests.addon.rigs import (
+    add_mesh,
+    add_rigged,
+    add_rigged_pair,
+    add_target,
+    find_armature,
+    pose,
+    split_up,
+    true_passage,
+    unpose,
+)
 from tests.addon.shape_keys import add_key, offsets_of, positions
+from tests.shapes import creature
 
 
 @pytest.fixture
@@ -79,6 +92,45 @@ def test_keys_relative_to_one_left_behind_move_alone(pair):
     assert names(target) == ["Basis", "Lift"]
     assert target.data.shape_keys.key_blocks["Lift"].relative_key.name == "Basis"
     assert offsets_of(target, "Lift")[:, 0].min() < -0.1  # back from Swell
+
+
+def test_a_key_relative_to_itself_moves_nothing_there_either(pair):
+    source, target = pair
+    key = source.data.shape_keys.key_blocks["Swell"]
+    key.relative_key, key.value = key, 1.0
+    assert carry() == {"FINISHED"}
+    made = target.data.shape_keys.key_blocks["Swell"]
+    assert (made.relative_key, made.value) == (made, 1.0)
+    assert np.abs(offsets_of(target, "Swell")).max() > 0.1  # it is there for when that is changed
+    np.testing.assert_allclose(shown(target), positions(target), atol=1e-6)
+
+
+def test_of_several_parts_those_that_a_key_moves_no_more_stand_still():
+    vertices, triangles, _ = creature(0.0, 8)
+    source = add_mesh("Source", vertices, triangles)
+    parts = split_up(add_mesh("Target", vertices, triangles), lambda centers: centers[:, 0] > 0)
+    target, co = joined("Target", parts), positions(source)
+    key = add_key(source, "Swell", np.tile([0, 0, 0.2], (len(co), 1)))
+    graph = bpy.context.evaluated_depsgraph_get()
+    meshes = [read_surface(side, graph, use_modifiers=False) for side in (source, target)]
+    places = [ClosestPoints(other).nearest(one.vertices) for one, other in (meshes, meshes[::-1])]
+    maps = [
+        SurfaceMap.from_barycentric(mesh, place.triangles, place.barycentric)
+        for mesh, place in zip(meshes[::-1], places, strict=True)
+    ]
+
+    def moves():
+        transfer = ShapeKeyTransfer(ShapeKeySettings())
+        transfer.read(bpy.context, source, target)
+        run(transfer.steps(Passage(MapPair(*meshes, *maps))))
+        transfer.write(bpy.context, source, target)
+        return [float(np.abs(offsets_of(part, "Swell")).max()) for part in parts]
+
+    assert min(moves()) > 0.1
+    key.data.foreach_set("co", (co + np.where(co[:, :1] > 0.3, [0, 0, 0.2], 0)).astype(np.float32).ravel())
+    front = [np.mean(positions(part)[:, 0]) > 0 for part in parts]
+    assert sorted(front) == [False, True]
+    assert [move > 0.1 for move in moves()] == front
 
 
 @pytest.mark.parametrize("existing", ["REPLACE", "SKIP"])
