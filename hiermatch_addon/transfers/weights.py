@@ -47,9 +47,10 @@ _WHOLE_SUM = 1e-3
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """What was read: the names of g groups, and their weights on both objects."""
+    """What was read: the names of g groups, which of them are to be carried, and their weights on both objects."""
 
     names: list[str]
+    chosen: NDArray[np.bool_]
     columns: Columns
     telling: NDArray[np.bool_]
     source_weights: csr_array
@@ -145,13 +146,21 @@ class WeightTransfer(Transfer):
             self._add_other_sides(source, part)
         if self._settings.mark:
             self._write_mark(target)
+        had, has = ((abs(weights).sum(axis=0) > 0) for weights in (self._read_task.before, self._result))
+        if emptied := [names[number] for number in np.flatnonzero(~self._read_task.chosen & columns.new & had & ~has)]:
+            self._notes.append(
+                f'Vertex groups of "{target.name}" for bones that move nothing of "{source.name}" were emptied: '
+                f"{listed(emptied)}."
+            )
         filled = int(self._torn.sum())
         if filled:
             self._notes.append(
                 f'Weights of {counted(filled, "vertex")} of "{target.name}" were filled in from the neighbors, far '
                 f'from whose places on "{source.name}" the map had led.'
             )
-        return TransferReport(counted(int((columns.new & ~columns.locked).sum()), "vertex group"), tuple(self._notes))
+        return TransferReport(
+            counted(int((self._read_task.chosen & ~columns.locked).sum()), "vertex group"), tuple(self._notes)
+        )
 
     @property
     def _read_task(self) -> _Task:
@@ -163,24 +172,28 @@ class WeightTransfer(Transfer):
         """Find out what is what among all groups that matter.
 
         Beside those to carry these are other groups of the target's bones: locked ones, which take their share of the
-        whole, and if only some groups are carried, all others, which give way.
+        whole, and if only some groups are carried, all others, which give way.  Else those of the source's bones are
+        carried as well, which have no weight there.
         """
         users = group_names(source)
         bones = deforming_bones(source, target)
         if not bones and _is_whole(group_columns(source, users, np.ones(len(users), bool))):
             # Without an armature to ask: groups that share out each vertex are those of bones.
             bones = set(users)
-        some = self._settings.groups in ("SELECTED", "ACTIVE")
+        some, its_bones = self._settings.groups in ("SELECTED", "ACTIVE"), deforming_bones(source)
         besides = [
             name
             for name in dict.fromkeys(group.name for part in parts_of(target) for group in part.vertex_groups)
-            if name in bones and name not in chosen and (some or name in locked)
+            if name in bones and name not in chosen and (some or name in locked or name in its_bones)
         ]
         names = [*chosen, *besides]
-        new = np.arange(len(names)) < len(chosen)
+        new = np.array([name in chosen or not (some or name in locked) for name in names])
         shared = np.array([name in bones for name in names])
         columns = Columns(np.array([name in locked for name in names]), new, shared, yielding=some)
-        return _Task(names, columns, shared & new, group_columns(source, names, new), group_columns(target, names))
+        picked = np.arange(len(names)) < len(chosen)
+        return _Task(
+            names, picked, columns, shared & picked, group_columns(source, names, new), group_columns(target, names)
+        )
 
     def _add_other_sides(self, source: Side, target: bpy.types.Object) -> None:
         """Add the empty groups of the other side that the source has, for whoever mirrors the target."""

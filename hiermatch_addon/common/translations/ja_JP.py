@@ -2439,6 +2439,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" already has something else called "{1}". Rename it, or turn Mark Rejected off.': (
         "「{0}」には別の「{1}」がすでにあります。名前を変えるか、除外の印をオフにしてください。"
     ),
+    'Vertex groups of "{0}" for bones that move nothing of "{1}" were emptied: {2}.': (
+        '"{1}"の何も動かさないボーンの"{0}"の頂点グループは空になりました: {2}。'
+    ),
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "「{1}」の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。"
     ),

@@ -1985,6 +1985,9 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" already has something else called "{1}". Rename it, or turn Mark Rejected off.': (
         "“{0}”已有其他名为“{1}”的内容。请将其重命名，或关闭标记剔除。"
     ),
+    'Vertex groups of "{0}" for bones that move nothing of "{1}" were emptied: {2}.': (
+        '"{0}" 中不带动 "{1}" 任何部分的骨骼的顶点组已被清空：{2}。'
+    ),
     'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
         "“{1}”的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。"
     ),

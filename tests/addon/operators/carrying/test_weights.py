@@ -19,7 +19,7 @@ from hiermatch.hiermatch_addon.transfers.weight_groups import chosen_groups, def
 from hiermatch.hiermatch_addon.transfers.weights import WeightTransfer
 from scipy.sparse import csr_array
 
-from tests.addon.rigs import add_rigged, add_target, true_passage
+from tests.addon.rigs import add_rigged, add_target, find_armature, true_passage
 from tests.addon.scenes import add_blob, mesh_snapshot, weights_of
 
 
@@ -104,6 +104,34 @@ def test_what_else_the_target_has_stays(pair):
     assert target.vertex_groups.active_index == 1
     np.testing.assert_allclose(dense(target, ["mine"]), 0.5)
     np.testing.assert_allclose(dense(target, names_of(source)).sum(axis=1), 1, atol=1e-5)
+
+
+@pytest.mark.parametrize("settings", [{}, {"groups": "DEFORM"}, {"mode": "ADD"}, {"mix": 0.5}])
+def test_groups_of_bones_that_move_nothing_of_the_source_give_way(pair, settings):
+    source, target = pair
+    source.vertex_groups.remove(source.vertex_groups["tail tip"])
+    everywhere = np.ones((len(target.data.vertices), 1))
+    write_weights(target, ["tail tip", "Mask"], csr_array(np.hstack([everywhere, everywhere])))
+    report = carry(source, target, **settings)
+    bones = [bone.name for bone in find_armature(source).data.bones if bone.name in target.vertex_groups]
+    replaced = "mode" not in settings and "mix" not in settings
+    moved = dense(source).any(axis=1)
+    np.testing.assert_allclose(dense(target, bones)[moved | (not replaced)].sum(axis=1), 1, atol=1e-5)
+    assert dense(target, ["tail tip"]).any() != replaced
+    assert any('were emptied: "tail tip"' in note for note in report.notes) == replaced
+    assert (dense(target, ["Mask"]) == 1).all()
+    assert report.done == f"{len(source.vertex_groups)} vertex groups"
+
+
+def test_groups_of_other_bones_stay(pair):
+    """Those of a rig that was replaced, for whoever takes it back."""
+    source, target = pair
+    armature = find_armature(source)
+    armature.data.bones["tail tip"].name = "Other"
+    source.vertex_groups.remove(source.vertex_groups["Other"])
+    write_weights(target, ["tail tip"], csr_array(np.ones((len(target.data.vertices), 1))))
+    assert not carry(source, target).notes
+    assert (dense(target, ["tail tip"]) == 1).all()
 
 
 def test_locked_groups_are_left_alone_and_keep_their_share(pair):
