@@ -2830,6 +2830,11 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
         "「{0}」にはすでに{1}という別の頂点グループがあります。先にその名前を変更してください。"
     ),
+    '"{0}" plays {1} as well, and would no longer be moved by it. Give "{2}" a copy first: press the number beside its '
+    "name in the Action Editor.": (
+        '"{0}"も{1}を再生しており、それでは動かなくなります。先に"{2}"へコピーを割り当ててください。アクションエディターで'
+        "名前の横の数字を押します。"
+    ),
     "Posing controls": "コントロールのポーズを求めています",
     "Looking for controls": "コントロールを探しています",
     '{0} of "{1}" was set so that its bones follow the controls with keys.': (

@@ -2283,6 +2283,10 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" has other vertex groups that are called {1} already. Rename them first.': (
         "“{0}”已有其他名为{1}的顶点组。请先重命名它们。"
     ),
+    '"{0}" plays {1} as well, and would no longer be moved by it. Give "{2}" a copy first: press the number beside its '
+    "name in the Action Editor.": (
+        '"{0}" 也在播放 {1}，此后将不再被其带动。请先给 "{2}" 一份副本：在动作编辑器中按其名称旁的数字。'
+    ),
     "Posing controls": "正在摆放控制器",
     "Looking for controls": "正在寻找控制器",
     '{0} of "{1}" was set so that its bones follow the controls with keys.': (

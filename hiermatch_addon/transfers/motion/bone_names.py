@@ -13,7 +13,7 @@ from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...properties.bone_pairs import bone_pairs_of, rows_of
 from ...scene.armatures import armature_of, read_skeleton
-from ...scene.motion.action_curves import actions_of, renamed_paths
+from ...scene.motion.action_curves import actions_of, bone_curves, renamed_paths
 from ...scene.shape_key_io import keys_of
 from .name_tables import NAME_TABLES
 
@@ -95,11 +95,12 @@ def rename_bones(scene: bpy.types.Scene, armature: bpy.types.Object, names: Mapp
     Raises
     ------
     ObjectError
-        If a name is taken; nothing is changed then.
+        If a name is taken, or another armature would no longer be moved; nothing is changed then.
     """
     bones = armature_of(armature).bones
     changed = {old: new for old, new in names.items() if old != new and old in bones}
     _check_free(armature, changed)
+    _check_own_actions(armature, changed)
     paths = [wanted for action in actions_of(armature) for wanted in renamed_paths(action, armature, changed)]
     places = _group_names(armature, changed)
     rows = [
@@ -150,6 +151,40 @@ def _check_free(armature: bpy.types.Object, changed: Mapping[str, str]) -> None:
             raise ObjectError(
                 f'"{obj.name}" has other vertex groups that are called {listed(groups)} already. Rename them first.'
             )
+
+
+def _check_own_actions(armature: bpy.types.Object, changed: Mapping[str, str]) -> None:
+    """Make sure that no other armature is moved by what Blender lets follow: paths of bones in what this one plays.
+
+    Raises
+    ------
+    ObjectError
+        If one is.
+    """
+    mine = {each for obj in bpy.data.objects if obj.data == armature.data for each in _plays(obj)}
+    for obj in bpy.data.objects:
+        if obj.type != "ARMATURE" or obj.data == armature.data:
+            continue
+        shared = sorted({name for name, _ in mine & _plays(obj)})
+        moving = [
+            name for name in shared if any(bone in changed for bone, _, _ in bone_curves(bpy.data.actions[name], obj))
+        ]
+        if moving:
+            raise ObjectError(
+                f'"{obj.name}" plays {listed(moving)} as well, and would no longer be moved by it. Give '
+                f'"{armature.name}" a copy first: press the number beside its name in the Action Editor.'
+            )
+
+
+def _plays(obj: bpy.types.Object) -> set[tuple[str, str]]:
+    """Return what an object plays, or has on tracks of the NLA editor: names of actions, and of their slots."""
+    animation: Any = obj.animation_data
+    players = [] if animation is None else [animation, *(one for track in animation.nla_tracks for one in track.strips)]
+    return {
+        (one.action.name, getattr(getattr(one, "action_slot", None), "identifier", ""))
+        for one in players
+        if one.action is not None
+    }
 
 
 def _group_names(armature: bpy.types.Object, changed: Mapping[str, str]) -> list[tuple[Any, str, str]]:

@@ -12,6 +12,7 @@ from hiermatch.hiermatch_addon.operators.motion.rename_bones import HIERMATCH_OT
 from hiermatch.hiermatch_addon.transfers.motion.name_tables import NAME_TABLES
 
 from tests.addon.characters import add_action, add_person, match_at_once, posed_vertices
+from tests.addon.motions import curves_of
 from tests.addon.panels.test_panels import Layout
 from tests.addon.scenes import weights_of
 
@@ -135,6 +136,38 @@ def test_refusals_change_nothing():
     assert bones() == before
     with pytest.raises(RuntimeError, match="no object"):
         rename(target="Nobody")
+
+
+@pytest.mark.parametrize("by", ["action", "strip"])
+def test_an_action_that_moves_another_armature_is_not_taken_from_it(by):
+    armature, other = add_person("B")[0], add_person("C")[0]
+    action = add_action(armature, "Walk")
+    animation = other.animation_data_create()
+    player = animation if by == "action" else animation.nla_tracks.new().strips.new("Walk", 1, action)
+    player.action = action
+    if hasattr(action, "slots"):
+        player.action_slot = action.slots[0]
+    bpy.context.scene.frame_set(11)
+    before, moved = bones(), posed_vertices(other)
+    with pytest.raises(RuntimeError, match='"C" plays "Walk" as well'):
+        rename(target="B", names="UNREAL")
+    assert bones() == before
+    armature.animation_data.action = action.copy()
+    assert rename(target="B", names="UNREAL") == {"FINISHED"}
+    bpy.context.scene.frame_set(1)
+    bpy.context.scene.frame_set(11)
+    np.testing.assert_allclose(posed_vertices(other), moved, atol=1e-5)
+
+
+@pytest.mark.skipif(bpy.app.version < (4, 4), reason="actions have slots from Blender 4.4 on")
+def test_other_slots_of_an_action_are_no_matter():
+    armature, other = add_person("B")[0], add_person("C")[0]
+    action = add_action(armature, "Walk")
+    animation = other.animation_data_create()
+    animation.action, animation.action_slot = action, action.slots.new("OBJECT", "C")
+    other.pose.bones["forearm.L"].keyframe_insert("rotation_quaternion", frame=1)
+    assert rename(target="B", names="UNREAL") == {"FINISHED"}
+    assert [path for path in {path for path, _ in curves_of(action)} if "forearm.L" in path]
 
 
 @pytest.mark.parametrize("held", ["switched off", "parent", "same bones"])
