@@ -5,7 +5,7 @@ from .dense.credibility import DOUBTFUL
 from .dense.densify import densify, densify_steps
 from .dense.quality import DenseMatch, MatchQuality, exchanged_sentence
 from .geometry.geodesics import GeodesicSolver
-from .geometry.procrustes import nearest_similarity
+from .geometry.procrustes import nearest_rotations, nearest_similarity
 from .geometry.voronoi_labels import nearest_regions
 from .hierarchical.settings import SETUPS, MatchSettings
 from .hierarchical.sparse_result import CoarseMatch, Level
@@ -56,7 +56,7 @@ from .retarget.wear.pose_mending import MendedWeights, WeightedItem, mend_weight
 from .retarget.wear.wearing import wear_steps
 from .retarget.wear.worn_item import FittedItem, WornItem
 from .retarget.weights.skin_weights import carried as carry_weights
-from .retarget.weights.skin_weights import row_sums, with_rows
+from .retarget.weights.skin_weights import row_shares, row_sums, with_rows
 from .retarget.weights.standing_weights import standing_weights
 from .retarget.weights.weight_transfer import CarriedWeights, Columns, carry_weights_steps, put_in
 from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
@@ -170,6 +170,7 @@ __all__ = [
     "moved_into",
     "moved_with_items",
     "nearest_regions",
+    "nearest_rotations",
     "nearest_similarity",
     "open_ends",
     "pair_bones",
@@ -187,6 +188,7 @@ __all__ = [
     "retrieve_steps",
     "rotation_channels",
     "rotation_matrices",
+    "row_shares",
     "row_sums",
     "run",
     "slopes_of",

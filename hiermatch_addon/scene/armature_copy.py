@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..common.access import open_collections, view_layer_of
+from ..common.phrases import listed
 from .armatures import armature_of
 from .posing.pose_state import bring_back
 
@@ -117,7 +118,7 @@ def repoint(armature: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.
     Returns
     -------
     list of str
-        Names of the other things that they still point to.
+        What is to be said of other things that they still point to.
     """
     kept: set[str] = set()
     for holder, member in (*_constraint_pointers(armature), *_driver_pointers(armature)):
@@ -126,7 +127,8 @@ def repoint(armature: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.
             setattr(holder, member, places[value])
         elif value is not None and value != armature and value.id_type != "SCENE":
             kept.add(value.name)
-    return sorted(kept - {thing.name for thing in places.values()})
+    others = sorted(kept - {thing.name for thing in places.values()})
+    return [f'Constraints or drivers of "{armature.name}" still point to {listed(others)}.'] if others else []
 
 
 def move_joints(

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 import numpy as np
-from scipy.sparse import csr_array, diags_array, vstack
+from scipy.sparse import csr_array, vstack
 
-from ...engine import Skeleton
+from ...engine import Skeleton, row_shares
 from ..common.access import mesh_of
 from .character import Character, armatures_above, parts_of, successor
 from .deform_layer import read_weights
@@ -138,12 +138,12 @@ def moving_armatures(side: Side) -> list[bpy.types.Object]:
     return list(dict.fromkeys(armature for armature in armatures if armature is not None))
 
 
-def read_skeleton(armature: bpy.types.Object) -> Skeleton:
-    """Read the bones of an armature object as they are at rest, in world space."""
+def read_skeleton(armature: bpy.types.Object, space: NDArray[np.float64] | None = None) -> Skeleton:
+    """Read the bones of an armature object as they are at rest, in world space, or as a matrix (4, 4) places them."""
     bones = armature_of(armature).bones
     numbers = {bone.name: number for number, bone in enumerate(bones)}
     parents = np.array([-1 if bone.parent is None else numbers[bone.parent.name] for bone in bones], np.int64)
-    matrix = np.array(armature.matrix_world, np.float64)
+    matrix = np.array(armature.matrix_world, np.float64) if space is None else space
 
     def placed(points: list[mathutils.Vector]) -> NDArray[np.float64]:
         return np.array(points, np.float64).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
@@ -185,7 +185,7 @@ def bone_weights(side: Side, armature: bpy.types.Object, names: Sequence[str]) -
     bones = armature_of(armature).bones
     numbers = {name: number for number, name in enumerate(names) if name in bones and bones[name].use_deform}
     parts = [_part_weights(obj, armature, numbers, names) for obj in parts_of(side)]
-    return _normalised(csr_array(vstack(parts, format="csr")))
+    return row_shares(csr_array(vstack(parts, format="csr")))
 
 
 def _part_weights(
@@ -203,13 +203,3 @@ def _part_weights(
     columns = read_weights(obj)[:, [group.index for group in groups]].tocoo()
     places = np.array([numbers[group.name] for group in groups], np.int64)
     return csr_array((columns.data, (columns.row, places[columns.col])), shape=(vertices, len(names)))
-
-
-def _normalised(weights: csr_array) -> csr_array:
-    """Scale rows of weights so that they sum to one, and leave out what is zero."""
-    weights = weights.astype(np.float64)
-    totals = weights.sum(axis=1)
-    scales = np.divide(1.0, totals, out=np.zeros_like(totals), where=totals > 0)
-    scaled = csr_array(diags_array(scales) @ weights)
-    scaled.eliminate_zeros()
-    return scaled

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from ..common.phrases import listed
 from .armatures import armature_of
 
 if TYPE_CHECKING:
     import bpy
     from mathutils import Vector
 
-__all__ = ["adapt_constraints", "displaced_bones"]
+__all__ = ["adapt_constraints", "displaced_bones", "displaced_notes"]
 
 _DISPLACED = 0.02
 """A bone counts as moved if an end of it is away from rest by more than this part of its length: less is the tolerance
@@ -47,6 +48,16 @@ def displaced_bones(armature: bpy.types.Object) -> list[str]:
         if max((now - then).length for now, then in ends) > _DISPLACED * rest.length:
             found.append(bone.name)
     return found
+
+
+def displaced_notes(armature: bpy.types.Object) -> list[str]:
+    """Return what to say of bones of an evaluated armature that its constraints or drivers move away from rest."""
+    displaced = displaced_bones(armature)
+    said = (
+        f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
+        "with them. Check them."
+    )
+    return [said] if displaced else []
 
 
 def _adapt(new: tuple[bpy.types.Object, Any], old: tuple[bpy.types.Object, Any], name: str, growth: float) -> None:

@@ -23,12 +23,12 @@ from ...engine import (
 )
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..common.phrases import counted, listed
+from ..common.phrases import counted
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
 from ..scene.binding import bind, hang_in_place, lost_poses, replaced_remarks, unbind
-from ..scene.bone_constraints import adapt_constraints, displaced_bones
+from ..scene.bone_constraints import adapt_constraints, displaced_notes
 from ..scene.character import parts_of, read_surface, vertex_ranges
 from ..scene.deform_layer import check_weights_writable
 from ..scene.key_drivers import counterparts
@@ -157,9 +157,8 @@ class MyRigTransfer(Transfer):
         move_joints(context, armature, self._names, cast("PlacedJoints", self._placed))
         own = find_armature(source), find_armature(target)
         places = {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, *own).items()}
-        kept = repoint(armature, {**places, model: armature, armature_of(model): armature_of(armature)})
+        notes = repoint(armature, {**places, model: armature, armature_of(model): armature_of(armature)})
         adapt_constraints(model, armature)
-        notes = [f'Constraints or drivers of "{armature.name}" still point to {listed(kept)}.'] if kept else []
         done = [f'the rig "{armature.name}" with {counted(len(self._names), "bone")}']
         if self._weights is not None:
             done.append(self._write_weights(target))
@@ -173,11 +172,7 @@ class MyRigTransfer(Transfer):
                 f'"{armature.name}" moves nothing yet. Generate its control rig, or bind "{target.name}" to it.'
             )
         view_layer_of(context).update()
-        if displaced := displaced_bones(armature):
-            notes.append(
-                f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
-                "with them. Check them."
-            )
+        notes += displaced_notes(armature)
         return TransferReport(", ".join(done), tuple(notes), tuple(self._remarks))
 
     def _armature(self) -> bpy.types.Object:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from ...engine import Progress, called_steps, is_posed, place_joints, rest_pose, within
+from ...engine import Progress, called_steps, is_posed, nearest_rotations, place_joints, rest_pose, within
 from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
@@ -16,9 +16,10 @@ from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
 from ..scene.binding import bind, hang_in_place, lost_poses, made_rig, mark_made, replaced_remarks, unbind
-from ..scene.bone_constraints import adapt_constraints, displaced_bones
+from ..scene.bone_constraints import adapt_constraints, displaced_notes
 from ..scene.character import parts_of
 from ..scene.key_drivers import counterparts
+from ..scene.motion.rigs import check_bones
 from ..scene.pair import check_writable
 from ..scene.posing.exercise import end_exercise, is_exercising
 from ..scene.rest_action import make_rest_action, pose_bases
@@ -82,11 +83,7 @@ class RigTransfer(Transfer):
                 f'No vertex of "{source.name}" is in a vertex group of a deforming bone of "{armature.name}", so it is '
                 "not known what the bones belong to. Bind the Source to its armature with weights first."
             )
-        matrix = np.array(armature.matrix_world, np.float64)
-        if abs(np.linalg.det(matrix[:3, :3])) <= np.finfo(float).tiny:
-            raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
-        if armature.mode == "EDIT":
-            raise ObjectError(f'The armature "{armature.name}" is in Edit Mode. Switch to Object Mode first.')
+        check_bones(armature)
         others = [other.name for other in moving_armatures(source) if other != armature]
         if others:
             self._notes.append(
@@ -95,11 +92,11 @@ class RigTransfer(Transfer):
             )
         self.names = rig.names
         axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
-        self._normals = np.array(axes, np.float64) @ matrix[:3, :3].T
+        self._normals = np.array(axes, np.float64) @ np.array(armature.matrix_world.to_3x3(), np.float64).T
         # The target stands as the source does: in the world, or each in the space of its object.
         stands = [parts_of(side)[0].matrix_world for side in (source, target)]
         turns = [np.array(matrix.to_3x3().normalized(), np.float64) for matrix in stands]
-        self.frames = np.stack([np.eye(3), _rotation(turns[1] @ np.linalg.inv(turns[0]))])
+        self.frames = nearest_rotations(np.stack([np.eye(3), turns[1] @ np.linalg.inv(turns[0])]))
 
     def leave_rest_pose(self) -> None:
         """Make no rest pose: the target is brought to it otherwise."""
@@ -134,9 +131,7 @@ class RigTransfer(Transfer):
         armature = made or copy_to(context, model, f"{target.name} Rig", first)
         missing = move_joints(context, armature, self.names, placed)
         if made is None:
-            kept = repoint(armature, _counterparts(source, target, model, armature))
-            if kept:
-                self._notes.append(f'Constraints or drivers of "{armature.name}" still point to {listed(kept)}.')
+            self._notes += repoint(armature, _counterparts(source, target, model, armature))
             mark_made(armature, model)
         elif missing:
             self._notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
@@ -150,12 +145,7 @@ class RigTransfer(Transfer):
             replaced = [] if beside is None else unbind(target, armature, beside)
             self._notes += lost_poses(target, replaced)
         view_layer_of(context).update()
-        displaced = displaced_bones(armature) if made is None else []
-        if displaced:
-            self._notes.append(
-                f'Constraints or drivers move {listed(displaced)} of "{armature.name}" away from rest, and the target '
-                "with them. Check them."
-            )
+        self._notes += displaced_notes(armature) if made is None else []
         if not {group.name for part in parts_of(target) for group in part.vertex_groups} & set(self.names):
             self._notes.append(
                 f'"{target.name}" has no weights for the bones of "{armature.name}" yet. Transfer the weights as well.'
@@ -203,9 +193,3 @@ def _counterparts(
     """Return what takes the place of what: of several parts, the first target's that of all of the source's."""
     first = parts_of(target)[0]
     return {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, model, armature).items()}
-
-
-def _rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Find the rotation nearest to a matrix (3, 3)."""
-    left, _, right = np.linalg.svd(matrix)
-    return left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right

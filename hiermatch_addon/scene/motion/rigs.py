@@ -9,7 +9,7 @@ import numpy as np
 
 from ....engine import BonePairing, Skeleton
 from ...common.errors import ObjectError
-from ..armatures import armature_of, find_armature
+from ..armatures import armature_of, find_armature, read_skeleton
 
 if TYPE_CHECKING:
     import bpy
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "check_armature",
+    "check_bones",
     "in_own_spaces",
     "object_rotation",
     "own_skeleton",
@@ -53,8 +54,8 @@ def two_rigs(source: Side, target: Side, *, written: bool) -> tuple[bpy.types.Ob
     return rigs
 
 
-def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
-    """Make sure that an armature can be read, and keys or poses of it can be written.
+def check_bones(armature: bpy.types.Object) -> None:
+    """Make sure that the bones of an armature can be read.
 
     Raises
     ------
@@ -65,10 +66,20 @@ def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
         raise ObjectError(f'The armature "{armature.name}" is in Edit Mode. Switch to Object Mode first.')
     if not len(armature_of(armature).bones):
         raise ObjectError(f'The armature "{armature.name}" has no bones.')
-    matrix = np.array(armature.matrix_world, np.float64)[:3, :3]
-    if abs(np.linalg.det(matrix)) <= np.finfo(float).tiny:
+    if abs(np.linalg.det(np.array(armature.matrix_world.to_3x3(), np.float64))) <= np.finfo(float).tiny:
         raise ObjectError(f'The armature "{armature.name}" has a scale of zero. Set its scale first.')
-    if np.linalg.det(matrix) < 0:
+
+
+def check_armature(armature: bpy.types.Object, *, written: bool) -> None:
+    """Make sure that an armature can be read, and keys or poses of it can be written.
+
+    Raises
+    ------
+    ObjectError
+        If not; the message says why and what to do.
+    """
+    check_bones(armature)
+    if armature.matrix_world.is_negative:
         raise ObjectError(
             f'The armature "{armature.name}" is mirrored by its scale. Apply that first (Object > Apply > Scale).'
         )
@@ -101,13 +112,7 @@ def rest_matrices(armature: bpy.types.Object) -> NDArray[np.float64]:
 
 def own_skeleton(armature: bpy.types.Object) -> Skeleton:
     """Read the bones at rest in the armature's own space."""
-    bones = armature_of(armature).bones
-    numbers = {bone.name: number for number, bone in enumerate(bones)}
-    parents = np.array([-1 if bone.parent is None else numbers[bone.parent.name] for bone in bones], np.int64)
-    heads, tails = (
-        np.array([getattr(bone, end) for bone in bones], np.float64) for end in ("head_local", "tail_local")
-    )
-    return Skeleton(parents, heads.reshape(-1, 3), tails.reshape(-1, 3))
+    return read_skeleton(armature, np.eye(4))
 
 
 def in_own_spaces(
