@@ -100,6 +100,7 @@ def transfer_motion_steps(
     *,
     ups: Floats | None = None,
     connected: Bools | None = None,
+    times: Floats | None = None,
 ) -> Steps[TransferredMotion]:
     r"""Transfer motion from one skeleton to another.
 
@@ -125,6 +126,8 @@ def transfer_motion_steps(
         Directions away from the ground in the source's and the target's space; z if not given.
     connected : (b,) array of bool, optional
         Which of the target's bones stay where the bone that they hang on takes them; none if not given.
+    times : (f,) array of float, optional
+        When the poses are, in units in which the way that is taken out begins at 0 and ends at 1; evenly if not given.
 
     Returns
     -------
@@ -139,6 +142,8 @@ def transfer_motion_steps(
     settings = settings or MotionSettings()
     connected = np.zeros(len(target), bool) if connected is None else np.asarray(connected, bool)
     _check(motion, pairing, target, settings, connected)
+    if times is not None and times.shape != (len(motion),):
+        raise RigError(f"There should be a time for each of the {len(motion)} poses, not {times.shape}.")
     ups = np.array([[0.0, 0, 1]] * 2) if ups is None else unit_vectors(np.asarray(ups, np.float64))
     if not ups.any(axis=1).all():
         raise RigError("A direction away from the ground has no length.")
@@ -164,7 +169,8 @@ def transfer_motion_steps(
         turns = body.bent(turns, places, arms, _hand_goals(body, motion, posed, arms))
         posed = body.posed(turns, places)
     if settings.in_place and len(motion) > 1:
-        posed = _in_place(posed, ups[1], np.flatnonzero(body.rooted))
+        times = np.linspace(0, 1, len(motion)) if times is None else times
+        posed = _in_place(posed, ups[1], np.flatnonzero(body.rooted), times)
     return TransferredMotion(posed, body.moved, body.placed, body.rooted, fixed, body.scale)
 
 
@@ -420,9 +426,10 @@ def _arms(limbs: list[Limb]) -> list[Limb]:
     return [limb for limb in free if any(alike(limb, other) for other in free)]
 
 
-def _in_place(posed: Motion, up: Floats, roots: Ints) -> Motion:
-    """Take out the way along the ground from the first pose to the last."""
-    way = (posed.heads[-1, roots] - posed.heads[0, roots]).mean(axis=0)
+def _in_place(posed: Motion, up: Floats, roots: Ints, times: Floats) -> Motion:
+    """Take out the way along the ground from the pose nearest to time 0 to that nearest to 1, evenly in time."""
+    first, last = (int(np.abs(times - end).argmin()) for end in (0, 1))
+    way = (posed.heads[last, roots] - posed.heads[first, roots]).mean(axis=0)
     way = way - (way @ up) * up
-    gone = np.linspace(0, 1, len(posed))[:, None, None] * way
+    gone = ((times - times[first]) / ((times[last] - times[first]) or 1.0))[:, None, None] * way
     return Motion(posed.skeleton, posed.turns, posed.heads - gone)

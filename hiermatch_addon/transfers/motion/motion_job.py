@@ -275,10 +275,10 @@ class MotionJob(SteppedJob):
         settings = self._plan.settings
         if sparse:
             settings = MotionSettings(stride=settings.stride, in_place=settings.in_place, rate=settings.rate)
-        count = len(self._targets)
+        count, times = len(self._targets), (sampled - keys.frames[0]) / (np.ptp(keys.frames) or 1.0)
         for number, (link, pairing) in enumerate(zip(self._targets, pairings, strict=True)):
             start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
-            found = yield from within(_transfer_steps(motion, turn, pairing, link, settings), start, end)
+            found = yield from within(_transfer_steps(motion, turn, pairing, link, settings, times=times), start, end)
             self._keep_fixed(link, found)
             channels = bone_channels(found_again(link), found)
             if _number(link) not in self._steered:
@@ -337,13 +337,21 @@ def _number(link: SideReference) -> int:
 
 
 def _transfer_steps(
-    motion: Motion, turn: NDArray[np.float64], pairing: BonePairing, link: SideReference, settings: MotionSettings
+    motion: Motion,
+    turn: NDArray[np.float64],
+    pairing: BonePairing,
+    link: SideReference,
+    settings: MotionSettings,
+    *,
+    times: NDArray[np.float64] | None = None,
 ) -> Steps[TransferredMotion]:
     """Compute the motion of one target from that of a source which is turned so in the world, (3, 3)."""
     rig = found_again(link)
     ups = np.array([turn[2], object_rotation(rig)[2]])  # the world's z axis in their spaces
     connected = np.array([bone.use_connect for bone in armature_of(rig).bones], bool)
-    steps = transfer_motion_steps(motion, pairing, own_skeleton(rig), settings, ups=ups, connected=connected)
+    steps = transfer_motion_steps(
+        motion, pairing, own_skeleton(rig), settings, ups=ups, connected=connected, times=times
+    )
     return (yield from steps)
 
 

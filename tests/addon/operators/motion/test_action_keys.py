@@ -2,6 +2,7 @@
 """Keys and curves of carried actions: where keys are, how curves go between and beyond them, and what is left out."""
 
 import bpy
+import numpy as np
 import pytest
 from mathutils import Matrix
 
@@ -29,6 +30,22 @@ def test_sparse_keys_stay_sparse_with_their_interpolation():
     still = made.names[[origin == frozenset(["hand.R"]) for origin in made.origins].index(True)]
     assert len(curves[f'pose.bones["{still}"].rotation_quaternion', 0].keyframe_points) == 1
     assert worst(source, target, (1, 6, 15, 21)) < 5e-3
+
+
+def test_in_place_a_body_stays_between_unequal_keys_as_well():
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    add_action(source, frames=(1, 11, 41, 51), way=(0, 0, 0.3))
+    hips = target.pose.bones[made.names[made.origins.index(frozenset(["hips"]))]]
+    ways = {}
+    for keying in ("SOURCE", "ALL"):
+        carry(source="A", target="B", keying=keying, in_place=True)
+        ways[keying] = []
+        for frame in range(1, 52, 2):
+            bpy.context.scene.frame_set(frame)
+            ways[keying].append(hips.head.copy())
+    assert np.abs(np.subtract(ways["SOURCE"], ways["ALL"])).max() < 0.01
+    assert np.abs(np.subtract(ways["SOURCE"][0], ways["SOURCE"][-1]))[:2].max() < 1e-4
 
 
 def test_bones_that_hang_elsewhere_do_not_come_off_between_keys():

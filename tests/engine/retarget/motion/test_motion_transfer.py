@@ -193,6 +193,18 @@ def test_stride_and_place(someone):
     assert np.allclose([way[2] for way in ways.values()], ways["usual"][2])
 
 
+def test_the_way_is_taken_out_evenly_in_time(someone):
+    """Poses lie close together around keys, and keys do not lie evenly."""
+    times = np.array([-0.01, 0, 0.01, 0.19, 0.2, 0.21, 0.99, 1, 1.01])
+    motion = moved(someone.rig, {"head": np.zeros((len(times), 3))}, np.outer(times, [2.0, 1, 0]))
+    _, pairing = stretched(someone, 1.0)
+    settings, tree = MotionSettings(in_place=True), someone.rig.skeleton
+    heads = transfer_motion(motion, pairing, tree, settings, times=times).motion.heads
+    assert np.allclose(heads, heads[1], atol=1e-9)
+    with pytest.raises(RigError, match="a time for each of the 9 poses"):
+        transfer_motion(motion, pairing, tree, settings, times=times[1:])
+
+
 def test_hands_on_the_body_stay_on_it_with_longer_arms(someone):
     names, tree = list(someone.rig.names), someone.rig.skeleton
     # Both hands on the hips.
