@@ -1255,6 +1255,16 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0}はオブジェクト"{1}"のサイズも変えます。それは移されませんでした。'
     ),
+    'All frames of {0} were computed: with keys only where the source has some "{1}" would move otherwise in '
+    "between.": (
+        '{0}のすべてのフレームを計算しました: ソースのキーの位置だけにキーを打つと、"{1}"はその間で違う動きになります。'
+    ),
+    '{0} of "{1}" stop at the last key, beyond which the source turns on: quaternions do not go on as Euler angles do. '
+    "Give these bones the rotation modes that those of the source have, and carry it again.": (
+        '"{1}"の{0}は最後のキーで止まりますが、ソースはその後も回り続けます: '
+        "クォータニオンはオイラー角のようには続きません。"
+        "これらのボーンの回転モードをソースのボーンと同じにして、もう一度移してください。"
+    ),
     "Bones that are connected do not move away from what they hang on, as those of the source do: {0} of "
     '"{1}". To carry that as well disconnect them (Armature > Parent > Disconnect Bone in Edit Mode).': (
         '接続されたボーンは、ソースのボーンのように親から離れて動きません: "{1}"の{0}。それも移すには、'

@@ -1041,6 +1041,13 @@ MESSAGES: Final[dict[str, str]] = {
     '{0} changes the size of the object "{1}", too. That was left out.': (
         '{0} 还会改变物体 "{1}" 的大小。这部分被略去。'
     ),
+    'All frames of {0} were computed: with keys only where the source has some "{1}" would move otherwise in '
+    "between.": ('已计算 {0} 的所有帧：若只在源有关键帧之处设关键帧，"{1}" 在其间的运动会不同。'),
+    '{0} of "{1}" stop at the last key, beyond which the source turns on: quaternions do not go on as Euler angles do. '
+    "Give these bones the rotation modes that those of the source have, and carry it again.": (
+        '"{1}" 的 {0} 在最后一个关键帧处停下，而源在其后继续旋转：四元数不会像欧拉角那样延续。'
+        "请让这些骨骼采用源骨骼的旋转模式，然后重新传递。"
+    ),
     "Bones that are connected do not move away from what they hang on, as those of the source do: {0} of "
     '"{1}". To carry that as well disconnect them (Armature > Parent > Disconnect Bone in Edit Mode).': (
         '相连的骨骼不会像源的骨骼那样离开父级移动："{1}" 的 {0}。若也要传递这种移动，请断开它们'

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from itertools import chain
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -16,7 +15,6 @@ from .action_curves import (
     CurveMaker,
     assign_action,
     bone_curves,
-    frame_range,
     object_curves,
     played_action,
     rotation_channel,
@@ -25,6 +23,7 @@ from .action_curves import (
 from .carried_action_io import mark_carried, to_be_replaced, was_carried
 from .own_scene import own_scene
 from .rigs import own_skeleton, rest_matrices
+from .source_keys import Way
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -33,49 +32,18 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
-    "OBJECT",
-    "ActionKeys",
     "BoneKeys",
     "current_motion",
     "evaluated_frames",
     "grows",
     "needs_evaluation",
     "posed_at",
-    "read_keys",
     "set_pose",
     "turned_above",
     "turned_at",
     "with_object",
     "write_action",
 ]
-
-
-@dataclass(frozen=True, eq=False)
-class ActionKeys:
-    """Where an action has its keys.
-
-    Attributes
-    ----------
-    frames : (2,) array of float
-        First and last frame.
-    times : dict
-        For each bone that it moves the frames of its keys, (k,); for the object itself those of `OBJECT`.
-    interpolations : dict
-        For each bone the interpolation after each of these keys, and the easing.
-    cycles : dict
-        For each bone and channel that has one the settings of the modifier that repeats its curves.
-    extrapolations : dict
-        For each bone and channel how its curves go on beyond the keys.
-    modified : bool
-        Whether more than keys and cycles says how a curve goes, such as a Noise modifier.
-    """
-
-    frames: NDArray[np.float64]
-    times: dict[str, NDArray[np.float64]]
-    interpolations: dict[str, list[tuple[str, str]]]
-    cycles: dict[tuple[str, str], dict[str, Any]]
-    extrapolations: dict[tuple[str, str], str]
-    modified: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +60,14 @@ class BoneKeys:
         The values.
     slopes : (2, k, c) array of float
         Their change per frame before and after each key.
-    interpolations : list of (str, str)
-        Interpolation and easing after each key; Bézier if empty.
+    ways : list of Way
+        How it goes on after each key; Bézier if empty.
     cycle : dict
         Settings of a modifier that repeats the curves; none if empty.
     extrapolation : str
         How they go on beyond the keys.
+    stops : bool
+        Whether they should go on there otherwise than such curves can.
     """
 
     bone: str
@@ -105,30 +75,14 @@ class BoneKeys:
     frames: NDArray[np.float64]
     values: NDArray[np.float64]
     slopes: NDArray[np.float64]
-    interpolations: list[tuple[str, str]] = field(default_factory=list)
+    ways: list[Way] = field(default_factory=list)
     cycle: dict[str, Any] = field(default_factory=dict)
     extrapolation: str = "CONSTANT"
+    stops: bool = False
 
-
-OBJECT = ""
-"""What stands among names of bones for the object itself, which carries them all."""
 
 _TURNED = 0.02
 """By what angle a bone is no longer at rest: about one degree."""
-
-_CYCLE = (
-    "mode_before",
-    "cycles_before",
-    "mode_after",
-    "cycles_after",
-    "use_restricted_range",
-    "frame_start",
-    "frame_end",
-    "blend_in",
-    "blend_out",
-    "use_influence",
-    "influence",
-)
 
 
 def needs_evaluation(armature: bpy.types.Object) -> bool:
@@ -143,29 +97,6 @@ def needs_evaluation(armature: bpy.types.Object) -> bool:
         return True
     animations = (armature.animation_data, armature_of(armature).animation_data)
     return any(animation is not None and len(animation.drivers) > 0 for animation in animations)
-
-
-def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKeys:
-    """Read where an action has its keys."""
-    times: dict[str, dict[float, tuple[str, str]]] = {}
-    cycles: dict[tuple[str, str], dict[str, Any]] = {}
-    extrapolations: dict[tuple[str, str], str] = {}
-    modified = False
-    whole = ((OBJECT, channel, curve) for channel, curve in _moving_curves(action, armature))
-    for bone, channel, curve in chain(bone_curves(action, armature), whole):
-        keys = times.setdefault(bone, {})
-        for point in curve.keyframe_points:
-            keys.setdefault(float(point.co[0]), (point.interpolation, point.easing))
-        extrapolations.setdefault((bone, channel), curve.extrapolation)
-        live = [modifier for modifier in curve.modifiers if not modifier.mute]
-        modified |= any(modifier.type != "CYCLES" for modifier in live)
-        for modifier in live:
-            if modifier.type == "CYCLES":
-                cycles.setdefault((bone, channel), {name: getattr(modifier, name) for name in _CYCLE})
-    frames = {bone: np.array(sorted(keys), np.float64) for bone, keys in times.items()}
-    curved = {bone: [times[bone][float(frame)] for frame in found] for bone, found in frames.items()}
-    ends = np.array(frame_range(action, armature), np.float64)
-    return ActionKeys(ends, frames, curved, cycles, extrapolations, modified)
 
 
 def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:
@@ -328,9 +259,9 @@ def _write_curve(curve: Any, keys: BoneKeys, index: int) -> None:  # noqa: ANN40
         slopes = keys.slopes[0 if side == "left" else 1, :, index]
         ends = np.stack([keys.frames + sign * lengths, values + sign * lengths * slopes], axis=1)
         points.foreach_set(f"handle_{side}", ends.astype(np.float32).ravel())
-    for point, (interpolation, easing) in zip(points, keys.interpolations or [("BEZIER", "AUTO")] * count, strict=True):
+    for point, way in zip(points, keys.ways or [Way()] * count, strict=True):
         point.handle_left_type = point.handle_right_type = "FREE"
-        point.interpolation, point.easing = interpolation, easing
+        point.interpolation, point.easing, point.back = way
     curve.extrapolation = keys.extrapolation
     if keys.cycle:
         modifier = curve.modifiers.new("CYCLES")

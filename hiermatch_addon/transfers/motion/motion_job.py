@@ -29,7 +29,6 @@ from ...scene.motion.motion_io import (
     grows,
     needs_evaluation,
     posed_at,
-    read_keys,
     set_pose,
     turned_above,
     turned_at,
@@ -38,7 +37,17 @@ from ...scene.motion.motion_io import (
 )
 from ...scene.motion.nla_strips import copy_strips
 from ...scene.motion.rigs import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of, two_rigs
-from .action_keys import SIDE_STEP, baked_keys, bone_channels, movers_of, sparse_frames, sparse_keys
+from ...scene.motion.source_keys import read_keys
+from .action_keys import (
+    SIDE_STEP,
+    baked_frames,
+    baked_keys,
+    bone_channels,
+    keys_suffice,
+    movers_of,
+    sparse_frames,
+    sparse_keys,
+)
 from .bone_pairs import pairing_job
 from .steered_rig import found_again, is_steered, steered_steps
 
@@ -51,7 +60,8 @@ if TYPE_CHECKING:
     from ...jobs.transfer_job import TransferJob, TransferOptions
     from ...jobs.verdict import Verdict
     from ...scene.character import Side
-    from ...scene.motion.motion_io import ActionKeys, BoneKeys
+    from ...scene.motion.motion_io import BoneKeys
+    from ...scene.motion.source_keys import ActionKeys
     from ..options.motion import MotionPlan
     from .bone_pairs import BonePairTransfer
     from .steered_rig import SteeredRig
@@ -128,6 +138,7 @@ class MotionJob(SteppedJob):
         self._poses: dict[int, TransferredMotion] = {}
         self._steered: dict[int, SteeredRig] = {}
         self._fixed: dict[int, list[str]] = {}
+        self._filled: list[str] = []
         super().__init__()
 
     def close(self) -> None:
@@ -201,6 +212,20 @@ class MotionJob(SteppedJob):
                 f'{listed(fixed)} of "{rig.name}". To carry that as well disconnect them (Armature > Parent > '
                 "Disconnect Bone in Edit Mode)."
             )
+        if self._filled:
+            notes.append(
+                f"All frames of {listed(self._filled)} were computed: with keys only where the source has some "
+                f'"{rig.name}" would move otherwise in between.'
+            )
+        found = [
+            keys for (number, _), all_keys in self._found.items() if number == rig.session_uid for keys in all_keys
+        ]
+        if stopped := list(dict.fromkeys(keys.bone for keys in found if keys.stops)):
+            notes.append(
+                f'{listed(stopped)} of "{rig.name}" stop at the last key, beyond which the source turns on: '
+                "quaternions do not go on as Euler angles do. Give these bones the rotation modes that those of "
+                "the source have, and carry it again."
+            )
         return notes + pairing_notes(scene, source, rig)
 
     def _write(
@@ -264,11 +289,17 @@ class MotionJob(SteppedJob):
     def _action_steps(self, name: str, pairings: list[BonePairing]) -> Steps[None]:
         """Carry an action over."""
         keys = read_keys(self._action(name), found_again(self._source))
-        first, last = np.floor(keys.frames[0]), np.ceil(keys.frames[1])
-        sparse = self._is_sparse(keys, last - first + 1)
+        movers = [
+            movers_of(pairing, (found_again(self._source), found_again(link)))
+            for link, pairing in zip(self._targets, pairings, strict=True)
+        ]
+        sparse = self._is_sparse(keys)
         if any(self._needs_keys(link, pairing) for link, pairing in zip(self._targets, pairings, strict=True)):
             sparse = False
-        frames = sparse_frames(keys) if sparse else np.arange(first, last + 1)
+        if sparse and not all(keys_suffice(keys, each, in_place=self._plan.settings.in_place) for each in movers):
+            sparse = False
+            self._filled += [name] if self._plan.keys == "SOURCE" else []
+        frames, first = sparse_frames(keys) if sparse else baked_frames(keys), np.floor(keys.frames[0])
         sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
         motion = yield from within(self._reading_steps(name, sampled, first), 0.0, 0.5)
         turn = turned_at(self._action(name), found_again(self._source), first)
@@ -288,12 +319,11 @@ class MotionJob(SteppedJob):
             if _number(link) in self._steered:
                 yield from self._steered[_number(link)].posed_steps(link, found)
                 channels = self._steered[_number(link)].channels(found_again(link), channels)
-            movers = movers_of(pairing, (found_again(self._source), found_again(link)))
             if sparse:
-                made = sparse_keys(channels, frames, keys, movers, found_again(self._source))
+                made = sparse_keys(channels, frames, keys, movers[number])
             else:
                 tolerance = None if self._plan.keys == "ALL" else self._plan.tolerance
-                made = baked_keys(channels, frames, tolerance, keys, movers)
+                made = baked_keys(channels, frames, tolerance, keys, movers[number])
             self._found[_number(link), name] = made
 
     def _keep_fixed(self, link: SideReference, found: TransferredMotion) -> None:
@@ -302,13 +332,14 @@ class MotionJob(SteppedJob):
         known = self._fixed.setdefault(_number(link), [])
         known += [names[number] for number in np.flatnonzero(found.fixed) if names[number] not in known]
 
-    def _is_sparse(self, keys: ActionKeys, count: float) -> bool:
-        """Tell whether the target gets keys where the source has them."""
+    def _is_sparse(self, keys: ActionKeys) -> bool:
+        """Tell whether the target is to get keys where the source has them."""
         plan, found = self._plan, len(sparse_frames(keys))
         if plan.settings.feet or plan.settings.hands or plan.keys in {"ALL", "REDUCED"} or not found:
             return False
         if plan.keys == "SOURCE":
             return True
+        count = np.ceil(keys.frames[1]) - np.floor(keys.frames[0]) + 1
         return found < _FEW * count and not keys.modified and not needs_evaluation(found_again(self._source))
 
     def _needs_keys(self, link: SideReference, pairing: BonePairing) -> bool:
