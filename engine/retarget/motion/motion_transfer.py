@@ -266,8 +266,12 @@ class _Body:
         if self.feet:
             before, after = (sum(getattr(limb, of) for limb in self.feet) for of in ("source_length", "target_length"))
         else:
-            pairs = self.source.heads[self.pairing.sources], self.target.heads[self.pairing.targets]
-            before, after = (_spread(heads) for heads in pairs)
+            pairs = (self.source, self.pairing.sources), (self.target, self.pairing.targets)
+            before, after = (_spread(tree.heads[bones]) for tree, bones in pairs)
+            if not before:  # a single bone has a length all the same
+                before, after = (
+                    _spread(np.concatenate([tree.heads[bones], tree.tails[bones]])) for tree, bones in pairs
+                )
         return _ratio(before, after) or 1.0
 
     def paths(self, source_heads: Floats, turns: Floats, stride: float) -> dict[int, Floats]:

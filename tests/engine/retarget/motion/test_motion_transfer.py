@@ -61,6 +61,17 @@ def test_a_target_of_other_size_that_faces_elsewhere_goes_its_way(someone, paire
     assert np.allclose(found.motion.turns, turn @ wild.turns @ turn.T, atol=1e-6)
 
 
+def test_of_a_single_pair_the_lengths_of_the_bones_count():
+    """Such as of balls and doors."""
+    source, target = (Skeleton(np.array([-1]), np.zeros((1, 3)), np.array([[0, 0, size]])) for size in (100.0, 1.0))
+    way = np.array([[[0.0, 0, 0]], [[50, 0, 0]]])
+    motion = Motion(source, np.tile(np.eye(3), (2, 1, 1, 1)), way)
+    none, same = np.zeros(1, np.int64), np.eye(3)[None]
+    found = transfer_motion(motion, BonePairing(none, none, np.ones(1), same, target.heads, np.eye(3)), target)
+    assert np.isclose(found.scale, 0.01)
+    assert np.allclose(found.motion.heads, way / 100)
+
+
 @pytest.fixture(scope="module")
 def stretchy(someone):
     """Random turns, and a head, a forearm and a toe that are moved on what they hang on."""
