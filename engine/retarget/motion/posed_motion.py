@@ -87,7 +87,7 @@ class LocalTransforms:
     rotations : (f, b, 3, 3) array of float
         In the axes of the bone at rest.
     locations : (f, b, 3) array of float
-        In the same axes.
+        In the same axes, or in those of its parent.
     """
 
     rotations: Floats
@@ -153,7 +153,9 @@ def motion_of_matrices(skeleton: Skeleton, rest: Floats, posed: Floats) -> Motio
     return Motion(skeleton, turns, heads, slides)
 
 
-def local_transforms(motion: Motion, axes: Floats, inherits: Bools | None = None) -> LocalTransforms:
+def local_transforms(
+    motion: Motion, axes: Floats, inherits: Bools | None = None, local: Bools | None = None
+) -> LocalTransforms:
     """Find the transforms of the bones against their parents: the inverse of `posed_motion`.
 
     Parameters
@@ -164,6 +166,8 @@ def local_transforms(motion: Motion, axes: Floats, inherits: Bools | None = None
         Axes of the bones at rest, as columns.
     inherits : (b,) array of bool, optional
         Which bones turn with their parents; all if not given.
+    local : (b,) array of bool, optional
+        Which have their locations in axes of their own, the others in those of their parents; all if not given.
 
     Returns
     -------
@@ -173,12 +177,14 @@ def local_transforms(motion: Motion, axes: Floats, inherits: Bools | None = None
     skeleton = motion.skeleton
     rotations, locations = np.empty_like(motion.turns), np.empty_like(motion.heads)
     for bone, parent in enumerate(skeleton.parents):
-        carrier, place = np.eye(3), skeleton.heads[bone]
+        carrier, place, own = np.eye(3), skeleton.heads[bone], axes[bone]
+        if local is not None and not local[bone]:
+            own = axes[parent] if parent >= 0 else np.eye(3)
         if parent >= 0:
             carrier = motion.turns[:, parent]
             offset = skeleton.heads[bone] - skeleton.heads[parent]
             place = motion.heads[:, parent] + carrier @ offset
-        locations[:, bone] = np.einsum("...ji,...j->...i", carrier @ axes[bone], motion.heads[:, bone] - place)
+        locations[:, bone] = np.einsum("...ji,...j->...i", carrier @ own, motion.heads[:, bone] - place)
         if parent >= 0 and inherits is not None and not inherits[bone]:
             carrier = np.eye(3)
         rotations[:, bone] = np.swapaxes(carrier @ axes[bone], -1, -2) @ motion.turns[:, bone] @ axes[bone]

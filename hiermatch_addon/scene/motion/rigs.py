@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....engine import BonePairing, Skeleton
+from ....engine import BonePairing, Skeleton, local_transforms
 from ...common.errors import ObjectError
 from ..armatures import armature_of, find_armature, read_skeleton
 
@@ -15,12 +15,14 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
+    from ....engine import LocalTransforms, Motion
     from ..character import Side
 
 __all__ = [
     "check_armature",
     "check_bones",
     "in_own_spaces",
+    "local_poses",
     "object_rotation",
     "own_skeleton",
     "rest_matrices",
@@ -108,6 +110,16 @@ def object_rotation(armature: bpy.types.Object) -> NDArray[np.float64]:
 def rest_matrices(armature: bpy.types.Object) -> NDArray[np.float64]:
     """Return axes and head of each bone at rest, in the armature's own space, (b, 4, 4)."""
     return np.array([bone.matrix_local for bone in armature_of(armature).bones], np.float64).reshape(-1, 4, 4)
+
+
+def local_poses(motion: Motion, armature: bpy.types.Object) -> LocalTransforms:
+    """Return the transforms of an armature's bones against their parents, as Blender keeps them, in poses of it."""
+    bones = armature_of(armature).bones
+    inherits, local = (
+        np.array([getattr(bone, f"use_{name}") for bone in bones], bool)
+        for name in ("inherit_rotation", "local_location")
+    )
+    return local_transforms(motion, rest_matrices(armature)[:, :3, :3], inherits, local)
 
 
 def own_skeleton(armature: bpy.types.Object) -> Skeleton:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
-from ....engine import local_transforms, reduced_keys, rotation_channels, slopes_of
+from ....engine import reduced_keys, rotation_channels, slopes_of
 from ...scene.armatures import armature_of
 from ...scene.motion.action_curves import rotation_channel
 from ...scene.motion.motion_io import BoneKeys
-from ...scene.motion.rigs import own_skeleton, rest_matrices
+from ...scene.motion.rigs import local_poses, own_skeleton
 from ...scene.motion.source_keys import OBJECT, Way, common_ways, key_frames
 
 if TYPE_CHECKING:
@@ -67,9 +67,7 @@ class BoneChannels:
 
 def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[BoneChannels]:
     """Make the channels of an armature's bones of its motion, in the rotation modes that the bones have."""
-    bones = armature_of(armature).bones
-    inherits = np.array([bone.use_inherit_rotation for bone in bones], bool)
-    local = local_transforms(found.motion, rest_matrices(armature)[:, :3, :3], inherits)
+    local = local_poses(found.motion, armature)
     tree = own_skeleton(armature)
     extent = float(np.ptp(np.concatenate([tree.heads, tree.tails]), axis=0).max())
     channels = []

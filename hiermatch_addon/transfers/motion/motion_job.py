@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 import numpy as np
 
-from ....engine import Motion, MotionSettings, Progress, local_transforms, transfer_motion_steps, within
+from ....engine import Motion, MotionSettings, Progress, transfer_motion_steps, within
 from ...common.access import view_layer_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted, listed
@@ -36,7 +36,7 @@ from ...scene.motion.motion_io import (
     write_action,
 )
 from ...scene.motion.nla_strips import copy_strips
-from ...scene.motion.rigs import check_armature, object_rotation, own_skeleton, rest_matrices, rig_of, two_rigs
+from ...scene.motion.rigs import check_armature, local_poses, object_rotation, own_skeleton, rig_of, two_rigs
 from ...scene.motion.source_keys import read_keys
 from .action_keys import (
     SIDE_STEP,
@@ -417,8 +417,7 @@ def _set_pose(
 ) -> list[str]:
     """Pose an armature as computed: bones with partners, or what turns them, only. Say what is to be known."""
     bones = cast("bpy.types.Pose", rig.pose).bones
-    inherits = np.array([bone.use_inherit_rotation for bone in armature_of(rig).bones], bool)
-    local = local_transforms(found.motion, rest_matrices(rig)[:, :3, :3], inherits)
+    local = local_poses(found.motion, rig)
     bases = {}
     for number, bone in enumerate(bones):
         if found.moved[number]:

@@ -258,6 +258,31 @@ def test_the_pose_of_the_moment():
     assert target.animation_data is None
 
 
+@pytest.mark.parametrize("local", [True, False])
+@pytest.mark.parametrize("rooted", [True, False])
+def test_places_are_kept_in_the_axes_that_a_bone_has_for_them(local, rooted):
+    """Without Local Location these are the axes of its parent."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed", rolls=0.4)
+    hips = made.names[made.origins.index(frozenset(["hips"]))]
+    if rooted:
+        bpy.context.view_layer.objects.active = target
+        bpy.ops.object.mode_set(mode="EDIT")
+        root = target.data.edit_bones.new("root")
+        root.head, root.tail, root.roll, root.use_deform = (0, 0, 0), (0.1, 0.3, 0), 0.3, False
+        target.data.edit_bones[hips].parent = root
+        bpy.ops.object.mode_set(mode="OBJECT")
+    target.data.bones[hips].use_local_location = local
+    add_action(source, way=(0.3, 0.2, 0.1))
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert worst(source, target, (1, 11, 21)) < 5e-3
+    target.animation_data_clear()
+    bpy.context.scene.frame_set(11)
+    assert pose(source="A", target="B") == {"FINISHED"}
+    bpy.context.view_layer.update()
+    assert np.linalg.norm(posed_vertices(source) - posed_vertices(target), axis=1).mean() / 1.8 < 5e-3
+
+
 def test_in_place_and_stride():
     source, _ = add_person("A")
     add_person("B", "renamed")

@@ -46,6 +46,16 @@ def test_a_bone_that_does_not_turn_with_its_parent_stores_all_of_its_turn(limb):
     assert np.allclose(axes @ local.rotations[:, 2] @ axes.T, motion.turns[:, 2])
 
 
+def test_places_may_be_kept_in_the_axes_of_the_parent(limb):
+    skeleton, rest = limb
+    basis, axes = basis_of(np.random.default_rng(3)), rest[:, :3, :3]
+    local = local_transforms(posed_motion(skeleton, rest, basis), axes, None, np.array([False, False, True]))
+    above = np.stack([np.eye(3), axes[0]])
+    wanted = np.einsum("bji,bjk,fbk->fbi", above, axes[:2], basis[:, :2, :3, 3])
+    assert np.allclose(local.locations[:, :2], wanted)
+    assert np.allclose(local.locations[:, 2], basis[:, 2, :3, 3])
+
+
 def test_scale_moves_children_but_turns_nothing(limb):
     skeleton, rest = limb
     basis = np.tile(np.eye(4), (1, 3, 1, 1))
