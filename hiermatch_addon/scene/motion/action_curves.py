@@ -22,6 +22,7 @@ __all__ = [
     "bone_curves",
     "every_curve",
     "frame_range",
+    "moves",
     "moves_bones",
     "moves_object_only",
     "object_curves",
@@ -197,10 +198,15 @@ def object_curves(action: bpy.types.Action, armature: bpy.types.Object) -> Itera
     Curves that stay at one value move nothing.
     """
     for curve in slot_curves(action, slot_for(action, armature)):
-        if curve.data_path in TRANSFORMS and _is_heard(curve):
-            values = [point.co[1] for point in curve.keyframe_points]
-            if len(curve.modifiers) or (values and max(values) - min(values) > _STILL):
-                yield curve.data_path, curve
+        if curve.data_path in TRANSFORMS and moves(curve):
+            yield curve.data_path, curve
+
+
+def moves(curve: Any) -> bool:  # noqa: ANN401 - Blender's types differ
+    """Tell whether a curve is heard, and does not stay at one value."""
+    values = [point.co[1] for point in curve.keyframe_points]
+    changes = len(curve.modifiers) > 0 or (bool(values) and max(values) - min(values) > _STILL)
+    return changes and _is_heard(curve)
 
 
 def _is_heard(curve: Any) -> bool:  # noqa: ANN401 - Blender's types differ

@@ -21,6 +21,7 @@ from .action_curves import (
     slot_for,
 )
 from .carried_action_io import mark_carried, to_be_replaced, was_carried
+from .holders import acts, is_carried
 from .own_scene import own_scene
 from .rigs import own_skeleton, rest_matrices
 from .source_keys import Way
@@ -37,10 +38,10 @@ __all__ = [
     "evaluated_frames",
     "grows",
     "needs_evaluation",
+    "object_places",
     "posed_at",
     "set_pose",
     "turned_above",
-    "turned_at",
     "with_object",
     "write_action",
 ]
@@ -81,14 +82,19 @@ class BoneKeys:
     stops: bool = False
 
 
+_STAYS = 1e-6
+"""By how much matrices of objects differ by rounding to single precision."""
+
 _TURNED = 0.02
 """By what angle a bone is no longer at rest: about one degree."""
 
 
-def needs_evaluation(armature: bpy.types.Object) -> bool:
-    """Tell whether more than the curves of its bones decides how an armature stands: constraints, drivers and such."""
+def needs_evaluation(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
+    """Tell whether more than an action's curves decides how an armature stands: constraints, drivers and such."""
     pose = cast("bpy.types.Pose", armature.pose)
-    if any(not constraint.mute for bone in pose.bones for constraint in bone.constraints):
+    if is_carried(armature, action):
+        return True
+    if any(acts(constraint, armature, action) for bone in pose.bones for constraint in bone.constraints):
         return True
     if any(
         not bone.use_inherit_rotation or not bone.use_local_location or bone.inherit_scale != "FULL"
@@ -130,25 +136,29 @@ def _basis(
     return basis
 
 
-def with_object(
-    motion: Motion, action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64], first: float
-) -> Motion:
-    """Let the bones do what an action does to the object as a whole, against where it has that in its first frame.
+def object_places(
+    action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return where an action has an object in the world at frames (f,), by curves of its own alone, (f, 4, 4)."""
+    held = armature.matrix_world @ armature.matrix_basis.inverted_safe()
+    return np.array(held, np.float64) @ _basis(armature, _moving_curves(action, armature), frames)
 
-    What an action does to its size is left out.
+
+def with_object(motion: Motion, places: NDArray[np.float64], first: NDArray[np.float64]) -> Motion:
+    """Let the bones do what is done to the object as a whole, against where it is in one of the poses.
+
+    Parameters
+    ----------
+    motion : Motion
+        The poses, in the object's space.
+    places : (f, 4, 4) array of float
+        Where that is in the world in each.
+    first : (4, 4) array of float
+        Where it counts as being where it is.
     """
-    curves = _moving_curves(action, armature)
-    if not curves:
-        return motion
-    basis = _basis(armature, curves, np.append(first, frames))
-    return motion.moved(np.linalg.inv(basis[0]) @ basis[1:])
-
-
-def turned_at(action: bpy.types.Action, armature: bpy.types.Object, frame: float) -> NDArray[np.float64]:
-    """Return how an action has an object turned in the world at a frame, (3, 3), without its scale."""
-    basis = Matrix(_basis(armature, _moving_curves(action, armature), np.array([frame]))[0].tolist())
-    now = armature.matrix_world @ armature.matrix_basis.inverted_safe() @ basis
-    return np.array(now.to_quaternion().to_matrix(), np.float64)
+    ways = np.linalg.inv(first) @ places
+    unit = max(1.0, float(np.abs(np.linalg.inv(first)).max()))
+    return motion if np.abs(ways - np.eye(4)).max() < _STAYS * unit else motion.moved(ways)
 
 
 def _moving_curves(action: bpy.types.Action, armature: bpy.types.Object) -> list[tuple[str, Any]]:
@@ -171,10 +181,21 @@ def current_motion(armature: bpy.types.Object) -> Motion:
         return _motion_of(armature, alone.matrices()[None])
 
 
-def evaluated_frames(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]) -> Motion:
-    """Let Blender play an action at frames (f,), with all constraints and drivers, by a copy of the armature."""
+def evaluated_frames(
+    action: bpy.types.Action, armature: bpy.types.Object, frames: NDArray[np.float64]
+) -> tuple[Motion, NDArray[np.float64]]:
+    """Let Blender play an action at frames (f,), with all constraints and drivers, by a copy of the armature.
+
+    Returns
+    -------
+    motion : Motion
+        The poses.
+    places : (f, 4, 4) array of float
+        Where the object is in the world, as large as it is now.
+    """
     slot = slot_for(action, armature)
-    posed = np.empty((len(frames), len(armature_of(armature).bones), 4, 4))
+    posed, places = np.empty((len(frames), len(armature_of(armature).bones), 4, 4)), np.empty((len(frames), 4, 4))
+    size = armature.matrix_world.to_scale()
     with own_scene(armature) as alone:
         animation = cast("Any", alone.armature.animation_data)
         animation.action = action
@@ -183,7 +204,9 @@ def evaluated_frames(action: bpy.types.Action, armature: bpy.types.Object, frame
         for number, frame in enumerate(frames):
             alone.go_to(frame)
             posed[number] = alone.matrices()
-    return _motion_of(armature, posed)
+            location, rotation, _ = alone.place().decompose()
+            places[number] = Matrix.LocRotScale(location, rotation, size)
+    return _motion_of(armature, posed), places
 
 
 def _motion_of(armature: bpy.types.Object, posed: NDArray[np.float64]) -> Motion:

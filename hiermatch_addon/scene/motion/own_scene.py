@@ -45,6 +45,11 @@ class OwnScene:
         self._scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
         self.update()
 
+    def place(self) -> Matrix:
+        """Return where the armature is in the world."""
+        depsgraph = cast("bpy.types.Depsgraph", self._layer.depsgraph)
+        return self.armature.evaluated_get(depsgraph).matrix_world
+
     def matrix(self, name: str) -> Matrix:
         """Return where a bone is, in the armature's space."""
         return cast("Matrix", self._bones[name].matrix)

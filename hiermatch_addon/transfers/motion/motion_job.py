@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from ....engine import Motion, MotionSettings, Progress, transfer_motion_steps, within
 from ...common.access import view_layer_of
@@ -23,15 +24,16 @@ from ...scene.character import SideReference
 from ...scene.motion.action_curves import scaled_bones
 from ...scene.motion.auto_keying import key_automatically
 from ...scene.motion.control_rigs import driven_bones
+from ...scene.motion.holders import is_carried
 from ...scene.motion.motion_io import (
     current_motion,
     evaluated_frames,
     grows,
     needs_evaluation,
+    object_places,
     posed_at,
     set_pose,
     turned_above,
-    turned_at,
     with_object,
     write_action,
 )
@@ -40,6 +42,7 @@ from ...scene.motion.rigs import check_armature, local_poses, object_rotation, o
 from ...scene.motion.source_keys import read_keys
 from .action_keys import (
     SIDE_STEP,
+    Movers,
     baked_frames,
     baked_keys,
     bone_channels,
@@ -293,16 +296,15 @@ class MotionJob(SteppedJob):
             movers_of(pairing, (found_again(self._source), found_again(link)))
             for link, pairing in zip(self._targets, pairings, strict=True)
         ]
-        sparse = self._is_sparse(keys)
+        sparse = self._is_sparse(name, keys)
         if any(self._needs_keys(link, pairing) for link, pairing in zip(self._targets, pairings, strict=True)):
             sparse = False
-        if sparse and not all(keys_suffice(keys, each, in_place=self._plan.settings.in_place) for each in movers):
+        if sparse and not self._keys_suffice(name, keys, movers):
             sparse = False
             self._filled += [name] if self._plan.keys == "SOURCE" else []
         frames, first = sparse_frames(keys) if sparse else baked_frames(keys), np.floor(keys.frames[0])
         sampled = (frames[:, None] + np.array([-SIDE_STEP, 0, SIDE_STEP])).ravel() if sparse else frames
-        motion = yield from within(self._reading_steps(name, sampled, first), 0.0, 0.5)
-        turn = turned_at(self._action(name), found_again(self._source), first)
+        motion, turn = yield from within(self._reading_steps(name, sampled, first), 0.0, 0.5)
         settings = self._plan.settings
         if sparse:
             settings = MotionSettings(stride=settings.stride, in_place=settings.in_place, rate=settings.rate)
@@ -332,7 +334,7 @@ class MotionJob(SteppedJob):
         known = self._fixed.setdefault(_number(link), [])
         known += [names[number] for number in np.flatnonzero(found.fixed) if names[number] not in known]
 
-    def _is_sparse(self, keys: ActionKeys) -> bool:
+    def _is_sparse(self, name: str, keys: ActionKeys) -> bool:
         """Tell whether the target is to get keys where the source has them."""
         plan, found = self._plan, len(sparse_frames(keys))
         if plan.settings.feet or plan.settings.hands or plan.keys in {"ALL", "REDUCED"} or not found:
@@ -340,26 +342,44 @@ class MotionJob(SteppedJob):
         if plan.keys == "SOURCE":
             return True
         count = np.ceil(keys.frames[1]) - np.floor(keys.frames[0]) + 1
-        return found < _FEW * count and not keys.modified and not needs_evaluation(found_again(self._source))
+        evaluated = needs_evaluation(found_again(self._source), self._action(name))
+        return found < _FEW * count and not keys.modified and not evaluated
+
+    def _keys_suffice(self, name: str, keys: ActionKeys, movers: list[dict[str, Movers]]) -> bool:
+        """Tell whether all targets move as the source does by keys where that has its keys."""
+        settings = self._plan.settings
+        carried = is_carried(found_again(self._source), self._action(name))
+        return not carried and all(keys_suffice(keys, each, in_place=settings.in_place) for each in movers)
 
     def _needs_keys(self, link: SideReference, pairing: BonePairing) -> bool:
         """Tell whether a target moves rightly only where it has keys: by controls, or by bones that hang elsewhere."""
         rig = found_again(link)
         return is_steered(rig, pairing) or pairing.comes_apart(*map(own_skeleton, (found_again(self._source), rig)))
 
-    def _reading_steps(self, name: str, frames: NDArray[np.float64], first: float) -> Steps[Motion]:
-        """Read the source's poses in frames (f,), some at a time, and the way of its object from the first frame on."""
-        parts = []
-        evaluated = needs_evaluation(found_again(self._source))
+    def _reading_steps(
+        self, name: str, frames: NDArray[np.float64], first: float
+    ) -> Steps[tuple[Motion, NDArray[np.float64]]]:
+        """Read the source's poses in frames (f,), some at a time, and the way of its object from the first frame on.
+
+        Returns them, and how the object is turned in the world in that frame, (3, 3).
+        """
+        parts, places = [], []
+        evaluated = needs_evaluation(found_again(self._source), self._action(name))
+        carried = is_carried(found_again(self._source), self._action(name))
         size = _EVALUATED_CHUNK if evaluated else _CHUNK
         for start in range(0, len(frames), size):
             yield Progress(start / len(frames), "Reading motion")
             rig, action, some = found_again(self._source), self._action(name), frames[start : start + size]
-            if evaluated:
-                parts.append(evaluated_frames(action, rig, some))
-            else:
-                parts.append(posed_at(action, rig, some))
-        return with_object(Motion.joined(parts), self._action(name), found_again(self._source), frames, first)
+            own = object_places(action, rig, some)
+            poses, found = evaluated_frames(action, rig, some) if evaluated else (posed_at(action, rig, some), own)
+            parts.append(poses)
+            places.append(found if carried else own)
+        ways = np.concatenate(places)
+        start_place = ways[np.searchsorted(frames, first)]
+        if not carried:
+            start_place = object_places(self._action(name), found_again(self._source), np.array([first]))[0]
+        turn = np.array(Matrix(start_place.tolist()).to_quaternion().to_matrix(), np.float64)
+        return with_object(Motion.joined(parts), ways, start_place), turn
 
 
 def _number(link: SideReference) -> int:

@@ -128,6 +128,46 @@ def test_what_moves_the_object_moves_the_body(keying, constrained):
     assert len(curves[f'pose.bones["{still}"].rotation_quaternion', 0].keyframe_points) == 1
 
 
+def carried_by(kind, source, empty):
+    """Let an object that is moved carry an armature in some way."""
+    if kind == "parent":
+        source.parent = empty
+    elif kind == "constraint":
+        source.constraints.new("COPY_LOCATION").target = empty
+    elif kind == "driver":
+        driver = source.driver_add("location", 1).driver
+        variable = driver.variables.new()
+        variable.name, driver.expression = "way", "way"
+        variable.targets[0].id, variable.targets[0].data_path = empty, "location[1]"
+    for frame, way in ((1, 0), (11, -0.5), (21, -2)):
+        moved, channel = (source, "delta_location") if kind == "delta" else (empty, "location")
+        setattr(moved, channel, (0, way, 0))
+        moved.keyframe_insert(channel, frame=frame)
+
+
+@pytest.mark.parametrize("keying", ["AUTO", "SOURCE", "ALL"])
+@pytest.mark.parametrize("kind", ["parent", "constraint", "driver", "delta"])
+def test_whatever_moves_the_object_moves_the_body(keying, kind):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    empty = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(empty)
+    carried_by(kind, source, empty)
+    assert carry(source="A", target="B", action="Wave", keying=keying) == {"FINISHED"}
+    assert worst(source, target, (1, 4, 9, 11, 16, 21)) < 5e-3
+
+
+def test_what_hangs_on_something_that_stays_is_carried_by_few_keys():
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    source.parent = bpy.data.objects.new("Empty", None)
+    bpy.context.scene.collection.objects.link(source.parent)
+    assert carry(source="A", target="B") == {"FINISHED"}
+    assert {len(curve.keyframe_points) for curve in curves_of(target.animation_data.action).values()} == {1, 3}
+
+
 def test_it_does_not_matter_how_the_object_stands_at_the_moment():
     """What falls over is on the ground in the first frame, whatever frame is shown."""
     source, _ = add_person("A")
