@@ -1265,6 +1265,9 @@ MESSAGES: Final[dict[str, str]] = {
         "クォータニオンはオイラー角のようには続きません。"
         "これらのボーンの回転モードをソースのボーンと同じにして、もう一度移してください。"
     ),
+    "In the place of meta strips the strips within them were copied: {0}.": (
+        "メタストリップの代わりに、その中のストリップをコピーしました: {0}。"
+    ),
     "Bones that are connected do not move away from what they hang on, as those of the source do: {0} of "
     '"{1}". To carry that as well disconnect them (Armature > Parent > Disconnect Bone in Edit Mode).': (
         '接続されたボーンは、ソースのボーンのように親から離れて動きません: "{1}"の{0}。それも移すには、'

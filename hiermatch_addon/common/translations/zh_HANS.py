@@ -1048,6 +1048,7 @@ MESSAGES: Final[dict[str, str]] = {
         '"{1}" 的 {0} 在最后一个关键帧处停下，而源在其后继续旋转：四元数不会像欧拉角那样延续。'
         "请让这些骨骼采用源骨骼的旋转模式，然后重新传递。"
     ),
+    "In the place of meta strips the strips within them were copied: {0}.": ("元片段已由其中的片段代替复制：{0}。"),
     "Bones that are connected do not move away from what they hang on, as those of the source do: {0} of "
     '"{1}". To carry that as well disconnect them (Armature > Parent > Disconnect Bone in Edit Mode).': (
         '相连的骨骼不会像源的骨骼那样离开父级移动："{1}" 的 {0}。若也要传递这种移动，请断开它们'

@@ -11,7 +11,7 @@ import bpy
 from ..armatures import armature_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
 __all__ = [
     "MADE_FOR",
@@ -20,6 +20,7 @@ __all__ = [
     "actions_of",
     "assign_action",
     "bone_curves",
+    "clips",
     "every_curve",
     "frame_range",
     "moves",
@@ -79,8 +80,18 @@ def playing(armature: bpy.types.Object) -> list[str]:
     animation = armature.animation_data
     if animation is None:
         return []
-    strips = [strip.action for track in animation.nla_tracks for strip in track.strips]
+    strips = [strip.action for track in animation.nla_tracks for strip, _ in clips(track.strips)]
     return [action.name for action in (animation.action, *strips) if action is not None]
+
+
+def clips(strips: Iterable[Any], *, mute: bool = False) -> Iterator[tuple[Any, bool]]:
+    """Go through strips, in the place of meta strips through those within; and say whether each is muted."""
+    for strip in strips:
+        muted = mute or strip.mute
+        if strip.type == "META":
+            yield from clips(strip.strips, mute=muted)
+        else:
+            yield strip, muted
 
 
 def slot_for(action: bpy.types.Action, armature: bpy.types.Object) -> Any:  # noqa: ANN401 - new in Blender 4.4

@@ -6,7 +6,7 @@ from __future__ import annotations
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from .action_curves import slot_for
+from .action_curves import clips, slot_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -29,16 +29,19 @@ _STRIP = (
     "use_reverse",
     "use_sync_length",
     "influence",
-    "mute",
 )
 """What copies take over, in this order: lengths follow from the first ones."""
+_ANIMATED = {"use_animated_influence": "influence", "use_animated_time": "strip_time"}
+"""What of a strip may be animated, and the curve of that."""
 
 
 def strip_actions(source: bpy.types.Object) -> list[str]:
     """Return the names of all actions that strips of an object play."""
     animation = source.animation_data
     tracks = animation.nla_tracks if animation is not None else ()
-    return list(dict.fromkeys(strip.action.name for track in tracks for strip in track.strips if strip.action))
+    return list(
+        dict.fromkeys(strip.action.name for track in tracks for strip, _ in clips(track.strips) if strip.action)
+    )
 
 
 def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> None:
@@ -62,7 +65,7 @@ def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> No
             strip.action_slot = slot
 
 
-def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> None:
+def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> list[str]:
     """Copy the tracks of an object with those strips whose actions have a counterpart.
 
     A track with the same actions at the same frames is there already, from a former time, and stays as it is.
@@ -73,46 +76,62 @@ def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mappin
         From where, and where to.
     made : mapping
         The target's action for the name of each of the source's.
+
+    Returns
+    -------
+    list of str
+        Meta strips, which scripts cannot make: the strips within them were copied.
     """
     animation = source.animation_data
     if animation is None:
-        return
+        return []
+    metas = list[str]()
     theirs: Any = target.animation_data or target.animation_data_create()
-    there = [[(strip.frame_start, strip.action) for strip in track.strips] for track in theirs.nla_tracks]
+    there = [[(strip.frame_start, strip.action) for strip, _ in clips(track.strips)] for track in theirs.nla_tracks]
     for track in animation.nla_tracks:
-        strips = [strip for strip in track.strips if strip.action is not None and strip.action.name in made]
+        strips = [(strip, mute) for strip, mute in clips(track.strips) if strip.action and strip.action.name in made]
         if not strips:
             continue
-        wanted = [(strip.frame_start, made[strip.action.name]) for strip in strips]  # type: ignore[union-attr]
+        wanted = [(strip.frame_start, made[strip.action.name]) for strip, _ in strips]
         if wanted in there:
             there.remove(wanted)
             continue
         copy = theirs.nla_tracks.new()
         copy.name = track.name
-        for strip in strips:
-            action = made[strip.action.name]  # type: ignore[union-attr]
-            free = max([strip.frame_start, *(one.frame_end for one in copy.strips)])
-            new = copy.strips.new(strip.name, ceil(free), action)  # which can be done at whole frames only
-            slot = slot_for(action, target)
-            if slot is not None:
-                new.action_slot = slot
-            for name in _STRIP:
-                setattr(new, name, getattr(strip, name))
-            new.frame_start, new.frame_end = strip.frame_start, strip.frame_end
-            _copy_influence(strip, new)
+        for strip, mute in strips:
+            _copy_strip(strip, copy, made[strip.action.name], target).mute = mute
         for name in _TRACK:
             setattr(copy, name, getattr(track, name))
+        if track.is_solo:  # else none would be
+            copy.is_solo = True
+        metas += [strip.name for strip in track.strips if strip.type == "META"]
+    return metas
 
 
-def _copy_influence(strip: Any, new: Any) -> None:  # noqa: ANN401 - strips, whose curves the stubs do not know
-    """Let a strip count as much in each frame as another one does, if that is animated."""
-    curve = strip.fcurves.find("influence") if strip.use_animated_influence else None
-    if curve is None:
-        return
-    new.use_animated_influence = True
-    copy = new.fcurves.find("influence")
+def _copy_strip(strip: Any, track: Any, action: bpy.types.Action, target: bpy.types.Object) -> Any:  # noqa: ANN401
+    """Put a strip that plays an action of the target as another one plays its own at the end of a track."""
+    free = max([strip.frame_start, *(one.frame_end for one in track.strips)])
+    new = track.strips.new(strip.name, ceil(free), action)  # which can be done at whole frames only
+    slot = slot_for(action, target)
+    if slot is not None:
+        new.action_slot = slot
+    for name in _STRIP:
+        setattr(new, name, getattr(strip, name))
+    new.frame_start, new.frame_end = strip.frame_start, strip.frame_end
+    for option, channel in _ANIMATED.items():
+        curve = strip.fcurves.find(channel) if getattr(strip, option) else None
+        if curve is not None:
+            setattr(new, option, True)
+            _copy_keys(curve, new.fcurves.find(channel))
+    new.use_animated_time_cyclic = strip.use_animated_time_cyclic
+    return new
+
+
+def _copy_keys(curve: Any, copy: Any) -> None:  # noqa: ANN401 - curves of strips, which the stubs do not know
+    """Give a curve the keys of another one."""
     for key in curve.keyframe_points:
         copy.keyframe_points.insert(*key.co)
     for made, key in zip(copy.keyframe_points, curve.keyframe_points, strict=True):
-        for name in ("interpolation", "handle_left_type", "handle_right_type", "handle_left", "handle_right"):
+        for name in ("interpolation", "easing", "handle_left_type", "handle_right_type", "handle_left", "handle_right"):
             setattr(made, name, getattr(key, name))
+    copy.extrapolation = curve.extrapolation

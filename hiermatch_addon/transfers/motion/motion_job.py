@@ -183,8 +183,9 @@ class MotionJob(SteppedJob):
             steered = self._steered.get(rig.session_uid)
             if not actions:
                 notes += _set_pose(cast("bpy.types.Scene", context.scene), rig, self._poses[rig.session_uid], steered)
-            if self._plan.strips:
-                copy_strips(source, rig, made)
+            metas = copy_strips(source, rig, made) if self._plan.strips else []
+            if metas:
+                notes.append(f"In the place of meta strips the strips within them were copied: {listed(metas)}.")
             moved = [row.target for row in rows_of(cast("bpy.types.Scene", context.scene), source, rig) if row.source]
             if steered is not None:
                 moved = [name for name in moved if name in steered.controls.lost]
