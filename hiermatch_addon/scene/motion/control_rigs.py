@@ -16,6 +16,7 @@ from mathutils import Quaternion
 
 from ..armatures import armature_of
 from .control_pose_io import Controls, Switch, at_rest, leaders_of
+from .holders import holds
 
 if TYPE_CHECKING:
     from collections.abc import Container, Sequence
@@ -261,7 +262,7 @@ def with_carrier(armature: bpy.types.Object, found: Candidates, controls: Contro
 
 def _is_held(bone: bpy.types.PoseBone) -> bool:
     """Tell whether constraints hold a bone."""
-    return any(not constraint.mute for constraint in bone.constraints)
+    return any(holds(constraint) for constraint in bone.constraints)
 
 
 def _is_free(bone: bpy.types.PoseBone) -> bool:

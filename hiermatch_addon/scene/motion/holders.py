@@ -18,18 +18,17 @@ _LEAVING = ("FLOOR", "LIMIT_DISTANCE", "LIMIT_LOCATION", "LIMIT_ROTATION", "LIMI
 """Types of constraints that leave a bone to its own curves within limits, and take no place from anything else."""
 
 
-def acts(constraint: Any, owner: bpy.types.Object, action: bpy.types.Action | None = None) -> bool:  # noqa: ANN401
+def acts(constraint: Any, action: bpy.types.Action | None = None) -> bool:  # noqa: ANN401 - the stubs know the base
     """Tell whether a constraint of an object, or of one of its bones, does anything, or may do so in some frame.
 
     Parameters
     ----------
     constraint : bpy.types.Constraint
         The constraint.
-    owner : bpy.types.Object
-        The object.
     action : bpy.types.Action, optional
-        What it is to play, beside what it plays.
+        What the object is to play, beside what it plays.
     """
+    owner = constraint.id_data
     if constraint.mute or constraint.influence > 0:
         return not constraint.mute
     played = [bpy.data.actions[name] for name in playing(owner)] + ([] if action is None else [action])
@@ -38,9 +37,9 @@ def acts(constraint: Any, owner: bpy.types.Object, action: bpy.types.Action | No
     return any(curve.data_path == f"{constraint.path_from_id()}.influence" for curve in curves)
 
 
-def holds(constraint: Any, owner: bpy.types.Object) -> bool:  # noqa: ANN401 - the stubs know the base class alone
+def holds(constraint: Any) -> bool:  # noqa: ANN401 - see above
     """Tell whether a constraint acts and gives its bone a place or a direction of its own."""
-    return constraint.type not in _LEAVING and acts(constraint, owner)
+    return constraint.type not in _LEAVING and acts(constraint)
 
 
 def is_carried(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
@@ -50,7 +49,7 @@ def is_carried(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
     """
     deltas = (each for each in slot_curves(action, slot_for(action, armature)) if each.data_path.startswith("delta_"))
     return any(moves(curve) for curve in deltas) or any(
-        any(acts(constraint, each, action) for constraint in each.constraints)
+        any(acts(constraint, action) for constraint in each.constraints)
         or _is_driven(each)
         or each.parent_type in {"BONE", "VERTEX", "VERTEX_3"}
         or (each != armature and bool(playing(each)))

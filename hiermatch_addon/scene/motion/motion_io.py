@@ -94,7 +94,7 @@ def needs_evaluation(armature: bpy.types.Object, action: bpy.types.Action) -> bo
     pose = cast("bpy.types.Pose", armature.pose)
     if is_carried(armature, action):
         return True
-    if any(acts(constraint, armature, action) for bone in pose.bones for constraint in bone.constraints):
+    if any(acts(constraint, action) for bone in pose.bones for constraint in bone.constraints):
         return True
     if any(
         not bone.use_inherit_rotation or not bone.use_local_location or bone.inherit_scale != "FULL"

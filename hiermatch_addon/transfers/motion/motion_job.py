@@ -24,7 +24,7 @@ from ...scene.character import SideReference
 from ...scene.motion.action_curves import scaled_bones
 from ...scene.motion.auto_keying import key_automatically
 from ...scene.motion.control_rigs import driven_bones
-from ...scene.motion.holders import is_carried
+from ...scene.motion.holders import acts, is_carried
 from ...scene.motion.motion_io import (
     current_motion,
     evaluated_frames,
@@ -473,7 +473,7 @@ def _notes(
     held = [
         bone.name
         for bone in cast("bpy.types.Pose", target.pose).bones
-        if bone.name in moved and any(not constraint.mute for constraint in bone.constraints)
+        if bone.name in moved and any(acts(constraint) for constraint in bone.constraints)
     ]
     if held:
         notes.append(

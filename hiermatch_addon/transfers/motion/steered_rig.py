@@ -22,6 +22,7 @@ from ...scene.motion.control_rigs import (
     with_carrier,
     worth_trying,
 )
+from ...scene.motion.holders import holds
 from ...scene.motion.rigs import own_skeleton, rig_of
 from .action_keys import LOCATION, BoneChannels
 
@@ -130,7 +131,7 @@ class SteeredRig:
 def is_steered(armature: bpy.types.Object, pairing: BonePairing) -> bool:
     """Tell whether constraints hold bones with partners."""
     pose = cast("bpy.types.Pose", armature.pose).bones
-    return any(not each.mute for number in np.unique(pairing.targets) for each in pose[int(number)].constraints)
+    return any(holds(each) for number in np.unique(pairing.targets) for each in pose[int(number)].constraints)
 
 
 def steered_steps(link: SideReference, found: TransferredMotion) -> Steps[SteeredRig | None]:

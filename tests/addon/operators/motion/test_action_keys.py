@@ -177,6 +177,32 @@ def test_what_is_repeated_between_two_frames_stays_in_time(keying):
     assert worst(source, target, (1, 5, 9, 20, 50, 60, 100)) < 5e-3
 
 
+@pytest.mark.parametrize("animated", [False, True])
+def test_constraints_of_no_influence_need_no_frames_but_their_own(animated):
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    for bone, subtarget in (
+        (source.pose.bones["forearm.R"], "head"),
+        (target.pose.bones[3], target.pose.bones[0].name),
+    ):
+        copied = bone.constraints.new("COPY_ROTATION")
+        copied.target, copied.subtarget, copied.influence = bone.id_data, subtarget, 0
+    constraint = source.pose.bones["forearm.R"].constraints[0]
+    for frame in (1, 21) if animated else ():
+        constraint.influence = frame > 1
+        constraint.keyframe_insert("influence", frame=frame)
+    constraint.influence = 0
+    source.animation_data.action = None
+    bpy.context.view_layer.update()
+    assert carry(source="A", target="B", action=action.name) == {"FINISHED"}
+    assert "Constraints hold" not in bpy.context.scene.hiermatch_retarget.report.notes
+    counts = {len(curve.keyframe_points) for curve in curves_of(target.animation_data.action).values()}
+    assert (counts <= {1, 3}) == (not animated)
+    source.animation_data.action = action
+    assert worst(source, target, (1, 6, 11, 21)) < 5e-3
+
+
 def test_a_cycle_is_not_lent_to_what_goes_on_otherwise():
     """The hips turn in cycles of ten frames, and go their way in forty."""
     source, _ = add_person("A")

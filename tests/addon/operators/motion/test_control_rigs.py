@@ -124,6 +124,36 @@ def test_bones_whose_controls_are_locked_are_named():
     assert "forearm.R" not in keyed(target.animation_data.action)
 
 
+@pytest.mark.parametrize("kind", ["LIMIT_ROTATION", "IK"])
+@pytest.mark.parametrize("controlled", [True, False])
+def test_bones_with_limits_or_constraints_of_no_influence_get_keys(kind, controlled):
+    source, _ = add_person("A")
+    target, _ = add_person("B")
+    if controlled:
+        bpy.context.view_layer.objects.active = target
+        bpy.ops.object.mode_set(mode="EDIT")
+        control, head = target.data.edit_bones.new("control"), target.data.edit_bones["head"]
+        control.head, control.tail, control.roll, control.use_deform = head.head, head.tail, head.roll, False
+        control.parent = head.parent
+        bpy.ops.object.mode_set(mode="OBJECT")
+        follows = target.pose.bones["head"].constraints.new("COPY_ROTATION")
+        follows.target, follows.subtarget = target, "control"
+    constraint = target.pose.bones["forearm.L"].constraints.new(kind)
+    if kind == "IK":
+        constraint.target, constraint.subtarget, constraint.chain_count = target, "head", 2
+        constraint.influence = 0
+    add_action(source, angles=["upper_arm.L", "forearm.L", "head", "forearm.R"])
+    assert ops.retarget_action(source="A", target="B") == {"FINISHED"}
+    assert "forearm.L" in keyed(target.animation_data.action)
+    report = bpy.context.scene.hiermatch_retarget.report
+    assert ("Constraints hold" in report.notes) == (kind != "IK" and not controlled)
+    assert "No control turns" not in report.remarks
+    height = np.ptp(someone().mesh.vertices[:, 2])
+    for frame in (1, 6, 11, 21):
+        bpy.context.scene.frame_set(frame)
+        assert np.linalg.norm(posed_vertices(target) - posed_vertices(source), axis=1).mean() < 0.005 * height
+
+
 def test_the_target_stands_as_before_until_it_is_written(monkeypatch):
     source, _ = add_person("A")
     target, _ = add_person("B")
