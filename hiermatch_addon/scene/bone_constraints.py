@@ -14,6 +14,8 @@ from ..common.phrases import listed
 from .armatures import armature_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import bpy
     from mathutils import Vector
 
@@ -26,6 +28,14 @@ of Blender's IK solver."""
 _NEUTRAL = 1e-3
 """How far the matrix of a constraint that does nothing may be from the identity."""
 
+_LENGTHS = {"STRETCH_TO": ("rest_length",), "LIMIT_DISTANCE": ("distance",), "FLOOR": ("offset",)}
+"""Settings that are lengths, whatever space the constraint works in."""
+
+_ENDS = tuple(f"{end}_{axis}" for end in ("min", "max") for axis in "xyz")
+"""Names of ranges, which are lengths as well where they are of locations in a bone's own space."""
+
+_LOCAL = ("LOCAL", "LOCAL_WITH_PARENT", "LOCAL_OWNER_ORIENT")
+
 
 def adapt_constraints(source: bpy.types.Object, armature: bpy.types.Object) -> None:
     """Set angles and lengths in the constraints of an armature that was copied from `source` and changed in shape."""
@@ -33,7 +43,7 @@ def adapt_constraints(source: bpy.types.Object, armature: bpy.types.Object) -> N
         model = cast("bpy.types.Pose", source.pose).bones.get(bone.name)
         if model is None:
             continue
-        growth = _length(armature, bone.name) / max(_length(source, bone.name), 1e-12)
+        growth = _growth(armature, source, bone.name)
         for constraint, before in zip(bone.constraints, model.constraints, strict=False):
             if constraint.type == before.type:
                 _adapt((armature, constraint), (source, before), bone.name, growth)
@@ -68,16 +78,33 @@ def _adapt(new: tuple[bpy.types.Object, Any], old: tuple[bpy.types.Object, Any],
         if None not in turned:
             angle = before.pole_angle + cast("float", turned[0]) - cast("float", turned[1])
             constraint.pole_angle = (angle + np.pi) % (2 * np.pi) - np.pi
-    elif constraint.type == "STRETCH_TO" and before.rest_length:
-        constraint.rest_length = growth * before.rest_length
-    elif constraint.type == "LIMIT_DISTANCE":
-        constraint.distance = growth * before.distance
+    elif constraint.type in _LENGTHS:
+        _grow(constraint, before, _LENGTHS[constraint.type], growth)
+    elif constraint.type == "LIMIT_LOCATION" and constraint.owner_space in _LOCAL:
+        _grow(constraint, before, _ENDS, growth)
+    elif constraint.type == "TRANSFORM":
+        if constraint.map_to == "LOCATION" and constraint.owner_space in _LOCAL:
+            _grow(constraint, before, [f"to_{end}" for end in _ENDS], growth)
+        looked_at = constraint.subtarget if constraint.target == armature else ""
+        if constraint.map_from == "LOCATION" and constraint.target_space in _LOCAL and looked_at:
+            _grow(constraint, before, [f"from_{end}" for end in _ENDS], _growth(armature, source, looked_at))
     elif constraint.type == "CHILD_OF" and _leaves_alone(source, before):
         constraint.set_inverse_pending = True
 
 
-def _length(armature: bpy.types.Object, name: str) -> float:
-    return armature_of(armature).bones[name].length
+def _grow(constraint: Any, before: Any, names: Iterable[str], growth: float) -> None:  # noqa: ANN401 - of any type
+    """Set lengths of a constraint to those that it had before, so many times as large."""
+    for name in names:
+        setattr(constraint, name, growth * getattr(before, name))
+
+
+def _growth(armature: bpy.types.Object, source: bpy.types.Object, name: str) -> float:
+    """Return how many times as long a bone is as in the armature before; as long, if one of them lacks it."""
+    all_bones = [armature_of(each).bones for each in (armature, source)]
+    if any(name not in bones for bones in all_bones):
+        return 1.0
+    length, before = (bones[name].length for bones in all_bones)
+    return length / max(before, 1e-12)
 
 
 def _leaves_alone(armature: bpy.types.Object, constraint: Any) -> bool:  # noqa: ANN401

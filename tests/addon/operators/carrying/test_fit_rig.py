@@ -260,6 +260,23 @@ def test_lengths_in_constraints_grow_with_the_bones():
     assert (stretch.rest_length, limit.distance) == (0.5, 3.0)
 
 
+def test_ranges_of_locations_grow_with_the_bones_whose_axes_they_are_in():
+    source, armature = add_rigged()
+    for name, space in (("head", "LOCAL"), ("neck", "WORLD")):
+        limit = armature.pose.bones[name].constraints.new("LIMIT_LOCATION")
+        limit.owner_space, limit.use_max_z, limit.max_z, limit.mute = space, True, 0.2, True
+    mapped = armature.pose.bones["tail"].constraints.new("TRANSFORM")
+    mapped.target, mapped.subtarget, mapped.map_to, mapped.mute = armature, "head", "ROTATION", True
+    mapped.target_space = mapped.owner_space = "LOCAL"
+    mapped.from_max_x, mapped.to_max_x, mapped.to_max_x_rot = 0.1, 0.1, 0.5
+    target, _ = add_target(source, matrix=Matrix.Scale(2, 4))
+    made = fit(source, target)[0].pose.bones
+    assert made["head"].constraints[0].max_z == pytest.approx(0.4, rel=0.05)
+    assert made["neck"].constraints[0].max_z == pytest.approx(0.2)
+    found = made["tail"].constraints[0]
+    assert (found.from_max_x, found.to_max_x, found.to_max_x_rot) == pytest.approx((0.2, 0.1, 0.5), rel=0.05)
+
+
 def test_constraints_that_move_bones_at_rest_are_told():
     source, armature = add_rigged()
     armature.pose.bones["tail"].constraints.new("COPY_LOCATION").target = add_blob("Outside")
