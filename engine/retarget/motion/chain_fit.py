@@ -170,10 +170,8 @@ class _Rigs:
             self.ends[bone] = joints.mean(axis=0)
             self.lengths[bone] = np.linalg.norm(joints - trees[1].heads[bone], axis=1).mean()
         self.lengths = np.maximum(self.lengths, _LEAST_LENGTH * self.lengths.max())
-        self.masses = [0.0] * len(segments)
-        for part, bones in enumerate(segments.targets):
-            for each in (part, *segments.above(part)):
-                self.masses[each] += float(self.lengths[bones].sum())
+        own = np.array([self.lengths[bones].sum() for bones in segments.targets])
+        self.masses = (own + segments.hanging @ own).tolist()
 
     def chain(self, parts: Sequence[int], bones: list[int]) -> FittedChain:
         """Set up what segments do with some bones of the target, of which all hang on the first."""
@@ -231,8 +229,9 @@ class _Rigs:
         )
         ways = {up for bone in [*rows, *(point.source for point in held)] for up in [bone, *tree.above(bone)]}
         ranks = {bone: float(rank) for rank, bone in enumerate(rows)}
-        for bone in tree.order.tolist():
-            if bone in ways and bone not in rows and set(tree.above(bone)) & set(rows):
+        carried = tree.hanging[list(rows)].any(axis=0)
+        for bone in tree.order[carried[tree.order]].tolist():
+            if bone in ways and bone not in rows:
                 parent = int(tree.parents[bone])
                 ranks[bone] = int(ranks[parent]) + 0.5
                 rests[bone] = rests[parent]

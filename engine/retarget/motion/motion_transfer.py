@@ -257,8 +257,9 @@ class _Body:
     def turns(self, source_turns: Floats) -> Floats:
         """How the target's bones with partners turn, (f, b, 3, 3); the others are left at rest."""
         result = np.tile(np.eye(3), (len(source_turns), len(self.target), 1, 1))
+        upright = self.pairing.upright @ source_turns
         for chain in self._chains:
-            result[:, chain.bones] = chain.turns(self.pairing.upright @ source_turns)
+            result[:, chain.bones] = chain.turns(upright)
         return result
 
     def _scale(self) -> float:
@@ -329,10 +330,6 @@ class _Body:
             result[:, limb.upper] = upper[:, None] @ turns[:, limb.upper]
             result[:, limb.lower] = lower[:, None] @ turns[:, limb.lower]
         return result
-
-    def beyond(self, part: int) -> list[int]:
-        """All segments that hang on one."""
-        return [other for other in range(len(self.segments)) if part in self.segments.above(other)]
 
     def _in_order(self) -> Ints:
         """Order the bones, each after its parent and what holds it."""
@@ -405,9 +402,10 @@ def _hand_goals(body: _Body, motion: Motion, posed: Motion, arms: list[Limb]) ->
             ends.append(np.stack([each.heads[:, bones[part][0]], last], axis=1))
         lines.append(BodyLine(*ends))
     goals = []
+    whole = {limb.parts: {*limb.parts, *np.flatnonzero(segments.hanging[limb.parts[1]]).tolist()} for limb in arms}
     for limb in arms:
-        own = {*limb.parts, *body.beyond(limb.parts[1])}
-        others = {part for arm in arms if arm is not limb for part in (*arm.parts, *body.beyond(arm.parts[1]))}
+        own = whole[limb.parts]
+        others = set().union(*(parts for parts in whole.values() if parts is not own))
         used = [
             replace(line, share=0.5 if part in others else 1.0)
             for part, line in enumerate(lines)

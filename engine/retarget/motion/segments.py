@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -87,6 +88,14 @@ class Segments:
         """Segments that one hangs on, the nearest first."""
         return ways_up(self.parents, part)
 
+    @cached_property
+    def hanging(self) -> Bools:
+        """Which segments hang on each, however far below, (s above, s)."""
+        found = np.zeros((len(self), len(self)), bool)
+        for part in range(len(self)):
+            found[self.above(part), part] = True
+        return found
+
     def tops(self, part: int, bones: Skeleton) -> list[int]:
         """List the target's bones of a segment that hang on no other of it."""
         return [int(bone) for bone in self.targets[part] if not set(bones.above(int(bone))) & set(self.targets[part])]
@@ -138,20 +147,16 @@ class Segments:
         if len(tops) < 2 or len(motion) < 2:
             return self
         reach = _FIXED * np.ptp(motion.skeleton.heads, axis=0).max()
-        trunk = max(tops, key=lambda top: sum(int(top) in self.above(part) for part in range(len(self))))
-        for top in tops:
-            joint = motion.heads[:, self.sources[top][0]]
-            places = {}
-            for part in range(len(self)):
-                bone = self.sources[part][-1]
-                places[part] = np.einsum("fji,fj->fi", motion.turns[:, bone], joint - motion.heads[:, bone])
-            holders = [
-                part
-                for part, place in places.items()
-                if part not in tops and int(top) not in self.above(part) and np.ptp(place, axis=0).max() < reach
-            ]
-            if top != trunk and holders and np.ptp(places[int(trunk)], axis=0).max() > reach:
-                parents[top] = min(holders, key=lambda part: np.linalg.norm(places[part][0]))
+        trunk = tops[self.hanging[tops].sum(axis=1).argmax()]
+        within = np.flatnonzero(self.parents >= 0)
+        bones = [self.sources[part][-1] for part in (*within, trunk)]
+        turns, heads = motion.turns[:, bones], motion.heads[:, bones]
+        for top in tops if len(within) else ():
+            places = np.einsum("fpji,fpj->fpi", turns, motion.heads[:, self.sources[top][:1]] - heads)
+            still = np.ptp(places, axis=0).max(axis=1) < reach
+            holders = np.flatnonzero(still[:-1] & ~self.hanging[top, within])
+            if top != trunk and len(holders) and not still[-1]:
+                parents[top] = within[holders[np.linalg.norm(places[0, holders], axis=1).argmin()]]
                 carried[top] = False
         return replace(self, parents=parents, carried=carried)
 
@@ -163,8 +168,7 @@ class Segments:
         parents = self.parents.copy()
         reach = _FIXED * np.ptp(motion.skeleton.heads, axis=0).max()
         for part in np.flatnonzero(self.parents >= 0):
-            below = sum(int(part) in self.above(other) for other in range(len(self)))
-            if 2 * (below + 1) <= len(self):
+            if 2 * (int(self.hanging[part].sum()) + 1) <= len(self):
                 continue
             joint, bone = self.sources[part][0], self.sources[self.parents[part]][-1]
             offset = motion.skeleton.heads[joint] - motion.skeleton.heads[bone]

@@ -2,8 +2,10 @@
 """Bones that stand for one another, in groups."""
 
 import numpy as np
+import pytest
 
 from engine import Motion, Skeleton
+from engine.retarget.motion import segments as segments_module
 from engine.retarget.motion.segments import Segments
 from tests.shapes import rotation
 
@@ -117,3 +119,27 @@ def test_bones_of_a_segment_that_hang_on_no_other_of_it():
     sources, targets = np.array([0, 0, 0]), np.array([1, 2, 3])
     segments = Segments.of(sources, targets, tree([-1]), tree([-1, 0, 1, 0]))
     assert segments.tops(0, tree([-1, 0, 1, 0])) == [1, 3]
+
+
+@pytest.mark.parametrize("flat", [True, False])
+def test_work_does_not_grow_with_the_square_of_the_bones(monkeypatch, flat):
+    """Rigs of clothes and of faces have hundreds of bones."""
+    calls = {np.einsum: 0, segments_module.way_to_root: 0}
+
+    def counted(function):
+        def call(*arguments, **names):
+            calls[function] += 1
+            return function(*arguments, **names)
+
+        return call
+
+    monkeypatch.setattr(segments_module, "way_to_root", counted(segments_module.way_to_root))
+    monkeypatch.setattr(np, "einsum", counted(np.einsum))
+    count, random = 80, np.random.default_rng(0)
+    heads, pairs = random.normal(size=(count, 3)), np.arange(count)
+    bones = Skeleton(np.full(count, -1) if flat else np.arange(-1, count - 1), heads, heads + np.array([0, 0, 1]))
+    motion = Motion(bones, np.tile(np.eye(3), (3, count, 1, 1)), heads + random.normal(size=(3, count, 3)))
+    segments = Segments.of(pairs, pairs, bones, bones).held_in(motion).freed_in(motion)
+    assert len(segments) == count
+    assert max(calls.values()) < 10 * count
+    assert segments.hanging.sum() == sum(len(segments.above(part)) for part in range(count))
