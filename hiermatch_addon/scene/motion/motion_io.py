@@ -24,7 +24,7 @@ from .carried_action_io import mark_carried, to_be_replaced, was_carried
 from .holders import acts, is_carried
 from .own_scene import own_scene
 from .rigs import own_skeleton, rest_matrices
-from .source_keys import Way
+from .source_keys_io import Way
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence

@@ -13,14 +13,14 @@ from ...scene.armatures import armature_of
 from ...scene.motion.action_curves import rotation_channel
 from ...scene.motion.motion_io import BoneKeys
 from ...scene.motion.rigs import local_poses, own_skeleton
-from ...scene.motion.source_keys import OBJECT, Way, common_ways, key_frames
+from ...scene.motion.source_keys_io import OBJECT, Way, common_ways, key_frames
 
 if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
     from ....engine import BonePairing, TransferredMotion
-    from ...scene.motion.source_keys import ActionKeys, CurveKeys, Cycle
+    from ...scene.motion.source_keys_io import ActionKeys, CurveKeys, Cycle
 
 __all__ = [
     "LOCATION",

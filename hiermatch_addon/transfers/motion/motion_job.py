@@ -39,7 +39,7 @@ from ...scene.motion.motion_io import (
 )
 from ...scene.motion.nla_strips import copy_strips
 from ...scene.motion.rigs import check_armature, local_poses, object_rotation, own_skeleton, rig_of, two_rigs
-from ...scene.motion.source_keys import read_keys
+from ...scene.motion.source_keys_io import read_keys
 from .action_keys import (
     SIDE_STEP,
     Movers,
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
     from ...jobs.verdict import Verdict
     from ...scene.character import Side
     from ...scene.motion.motion_io import BoneKeys
-    from ...scene.motion.source_keys import ActionKeys
+    from ...scene.motion.source_keys_io import ActionKeys
     from ..options.motion import MotionPlan
     from .bone_pairs import BonePairTransfer
     from .steered_rig import SteeredRig

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import chain, pairwise
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
@@ -75,29 +75,36 @@ class CurveKeys:
     ----------
     frames : (k,) array of float
         When.
-    ways : list of Way or None
-        How it goes on from each; None where it stays at its value until the next.
+    kinds : list of Way or None
+        All ways that it goes; None for staying at a value until the next key.
+    ways : (k,) array of int
+        Which of them it goes from each key.
     goes_on : bool
         Whether it moves on beyond its keys.
     """
 
     frames: NDArray[np.float64]
-    ways: list[Way | None]
+    kinds: list[Way | None]
+    ways: NDArray[np.int64]
     goes_on: bool
 
     @property
     def moves(self) -> bool:
         """Whether its values differ."""
-        return self.goes_on or any(way is not None for way in self.ways[:-1])
+        return self.goes_on or any(self.kinds[way] is not None for way in np.unique(self.ways[:-1]))
 
-    def way(self, start: float, end: float) -> Way | None:
-        """Return how it goes from one frame to another, between which it has no keys; None if it does not move."""
-        number = int(np.searchsorted(self.frames, start, side="right")) - 1
-        if number < 0 or number >= len(self.frames) - 1:
-            return _OWN if self.goes_on and end < np.inf else None
-        way = self.ways[number]
-        whole = self.frames[number] == start and self.frames[number + 1] == end
-        return way if way is None or whole or way.interpolation in _PLAIN else _OWN
+    def codes(self, frames: NDArray[np.float64], table: dict[Way | None, int]) -> NDArray[np.int64]:
+        """Return how it goes from each of some frames, which its own are among, to the next: by numbers of a table."""
+        numbers = np.searchsorted(self.frames, frames[:-1], side="right") - 1
+        inside = (numbers >= 0) & (numbers < len(self.frames) - 1)
+        found = np.full(len(numbers), table[_OWN if self.goes_on else None])
+        numbers, starts, ends = numbers[inside], frames[:-1][inside], frames[1:][inside]
+        whole = (self.frames[numbers] == starts) & (self.frames[numbers + 1] == ends)
+        known = np.array([table.setdefault(kind, len(table)) for kind in self.kinds], np.int64)
+        plain = np.array([kind is None or kind.interpolation in _PLAIN for kind in self.kinds], bool)
+        ways = self.ways[numbers]
+        found[inside] = np.where(whole | plain[ways], known[ways], table[_OWN])
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,31 +159,43 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
 
 def _curve_keys(curve: Any, channel: str, *, repeated: bool) -> CurveKeys:  # noqa: ANN401 - Blender's types differ
     """Read the keys of one curve."""
-    points = list(curve.keyframe_points)
-    ways: list[Way | None] = [_way(*both, far=_FAR.get(channel, np.inf)) for both in pairwise(points)]
-    moves = any(way is not None for way in ways)
-    ends = ((points[0], -1), (points[-1], 1)) if points else ()
-    away = any(abs(curve.evaluate(point.co[0] + step) - point.co[1]) > _STILL for point, step in ends)
-    ways += [_named(point) for point in points[-1:]]
-    return CurveKeys(np.array([point.co[0] for point in points], np.float64), ways, away or (repeated and moves))
-
-
-def _way(point: Any, after: Any, far: float) -> Way | None:  # noqa: ANN401 - keys, whose type differs
-    """Say how a curve goes from one key to the next."""
-    way, change = _named(point), after.co[1] - point.co[1]
-    heights = [after.co[1]]
-    if way.interpolation == "BEZIER":
-        heights += [point.handle_right[1], after.handle_left[1]]
-    if way.interpolation != "ELASTIC" and max(abs(height - point.co[1]) for height in heights) <= _STILL:
-        return None
+    points = curve.keyframe_points
+    frames, values = _read(points, "co", 2).T
+    right, left = (_read(points, f"handle_{side}", 2)[:, 1] for side in ("right", "left"))
+    named = np.concatenate([_read(points, name, 1) for name in ("interpolation", "easing", "back")], axis=1)
+    names = [_names(points, name) for name in ("interpolation", "easing")]
+    kinds, numbers = np.unique(named, axis=0, return_inverse=True)
+    ways = [_way(names[0][int(kind)], names[1][int(easing)], float(back)) for kind, easing, back in kinds]
+    said = np.array([way.interpolation for way in ways], str)[numbers.reshape(-1)][:-1]
+    found = numbers.reshape(-1) + 2
+    changes = np.abs(np.diff(values))
+    heights = np.maximum(np.abs(right[:-1] - values[:-1]), np.abs(left[1:] - values[:-1]))
+    still = np.where(said == "BEZIER", np.maximum(changes, heights), changes) <= _STILL
     # How far an elastic one swings is a length, which other axes do not have.
-    return _OWN if way.interpolation == "ELASTIC" or (way != Way("CONSTANT") and abs(change) > far) else way
+    found[:-1][still] = 0
+    found[:-1][(said == "ELASTIC") | ((said != "CONSTANT") & (changes > _FAR.get(channel, np.inf)))] = 1
+    ends = ((0, -1), (-1, 1)) if len(frames) else ()
+    away = any(abs(curve.evaluate(frames[end] + step) - values[end]) > _STILL for end, step in ends)
+    return CurveKeys(frames, [None, _OWN, *ways], found, away or (repeated and bool(found[:-1].any())))
 
 
-def _named(point: Any) -> Way:  # noqa: ANN401 - see above
-    """Return what a key says of how the curve goes on from it."""
-    kind = point.interpolation
-    return Way(kind) if kind in _PLAIN else Way(kind, point.easing, point.back if kind == "BACK" else 0.0)
+def _read(points: Any, name: str, width: int) -> NDArray[np.float64]:  # noqa: ANN401 - see above
+    """Read a member of all keys of a curve, (k, width)."""
+    is_named = points[0].bl_rna.properties[name].type == "ENUM" if len(points) else False
+    values = np.empty(len(points) * width, np.int32 if is_named else np.float32)
+    points.foreach_get(name, values)
+    return values.reshape(-1, width).astype(np.float64)
+
+
+def _names(points: Any, name: str) -> dict[int, str]:  # noqa: ANN401 - see above
+    """Return what the numbers of a member of keys mean."""
+    items = points[0].bl_rna.properties[name].enum_items if len(points) else ()
+    return {item.value: item.identifier for item in items}
+
+
+def _way(kind: str, easing: str, back: float) -> Way:
+    """Return what a key says of how the curve goes on from it, without what means nothing for that."""
+    return Way(kind) if kind in _PLAIN else Way(kind, easing, back if kind == "BACK" else 0.0)
 
 
 def key_frames(curves: Sequence[CurveKeys]) -> NDArray[np.float64]:
@@ -199,16 +218,24 @@ def common_ways(curves: Sequence[CurveKeys], *, eased: bool) -> list[Way] | None
     list of Way or None
         One for each of the `key_frames`; None if they do not go in one way, so that keys alone cannot say it.
     """
-    frames, found = key_frames(curves), list[Way]()
-    for start, end in pairwise([*frames.tolist(), np.inf]):
-        ways = {curve.way(start, end) for curve in curves} - {None}
-        if end == np.inf:
-            last = [curve.ways[-1] for curve in curves if len(curve.frames) and curve.frames[-1] == start]
-            found.append(next((way for way in last if way is not None), Way()))
-        elif ways == {Way("LINEAR"), Way("BEZIER")}:
-            found.append(Way())  # with slopes that are measured
-        elif len(ways) > 1 or _OWN in ways or not (eased or ways <= {Way(kind) for kind in _PLAIN}):
-            return None
-        else:
-            found.append(cast("Way", next(iter(ways), Way())))
-    return found
+    frames = key_frames(curves)
+    table: dict[Way | None, int] = {None: 0, _OWN: 1}
+    columns = np.array([curve.codes(frames, table) for curve in curves], np.int64).reshape(
+        len(curves), max(len(frames) - 1, 0)
+    )
+    kinds, numbers = np.unique(columns, axis=1, return_inverse=True)
+    ways = list(table)
+    together = [_together({ways[number] for number in kind} - {None}, eased=eased) for kind in kinds.T]
+    if None in together:
+        return None
+    last = [curve.kinds[curve.ways[-1]] for curve in curves if len(curve.frames) and curve.frames[-1] == frames[-1]]
+    found = [cast("Way", together[number]) for number in numbers.reshape(-1)]
+    return found + [next((way for way in last if way is not None), Way())] * (len(frames) > 0)
+
+
+def _together(ways: set[Way | None], *, eased: bool) -> Way | None:
+    """Return the way that all of some together are, if there is one."""
+    if ways <= {Way("LINEAR"), Way()}:
+        return Way("LINEAR") if ways == {Way("LINEAR")} else Way()  # with slopes that are measured
+    (way, *others) = ways
+    return way if not others and way != _OWN and (eased or way == Way("CONSTANT")) else None
