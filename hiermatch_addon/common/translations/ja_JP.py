@@ -1259,8 +1259,8 @@ MESSAGES: Final[dict[str, str]] = {
     "between.": (
         '{0}のすべてのフレームを計算しました: ソースのキーの位置だけにキーを打つと、"{1}"はその間で違う動きになります。'
     ),
-    '{0} of "{1}" stop at the last key, beyond which the source turns on: quaternions do not go on as Euler angles do. '
-    "Give these bones the rotation modes that those of the source have, and carry it again.": (
+    '{0} of "{1}" will stay beyond the last key, where the source turns on: quaternions do not go on as Euler angles '
+    "do. Give these bones the rotation modes that those of the source have, and carry it again.": (
         '"{1}"の{0}は最後のキーで止まりますが、ソースはその後も回り続けます: '
         "クォータニオンはオイラー角のようには続きません。"
         "これらのボーンの回転モードをソースのボーンと同じにして、もう一度移してください。"

@@ -1043,8 +1043,8 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     'All frames of {0} were computed: with keys only where the source has some "{1}" would move otherwise in '
     "between.": ('已计算 {0} 的所有帧：若只在源有关键帧之处设关键帧，"{1}" 在其间的运动会不同。'),
-    '{0} of "{1}" stop at the last key, beyond which the source turns on: quaternions do not go on as Euler angles do. '
-    "Give these bones the rotation modes that those of the source have, and carry it again.": (
+    '{0} of "{1}" will stay beyond the last key, where the source turns on: quaternions do not go on as Euler angles '
+    "do. Give these bones the rotation modes that those of the source have, and carry it again.": (
         '"{1}" 的 {0} 在最后一个关键帧处停下，而源在其后继续旋转：四元数不会像欧拉角那样延续。'
         "请让这些骨骼采用源骨骼的旋转模式，然后重新传递。"
     ),

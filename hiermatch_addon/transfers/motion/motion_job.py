@@ -226,7 +226,7 @@ class MotionJob(SteppedJob):
         ]
         if stopped := list(dict.fromkeys(keys.bone for keys in found if keys.stops)):
             notes.append(
-                f'{listed(stopped)} of "{rig.name}" stop at the last key, beyond which the source turns on: '
+                f'{listed(stopped)} of "{rig.name}" will stay beyond the last key, where the source turns on: '
                 "quaternions do not go on as Euler angles do. Give these bones the rotation modes that those of "
                 "the source have, and carry it again."
             )

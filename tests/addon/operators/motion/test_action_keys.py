@@ -142,7 +142,7 @@ def test_what_turns_on_beyond_its_keys_does_so_or_is_named(keying):
     source, _ = add_person("A")
     target, made = add_person("B", "renamed")
     head = target.pose.bones[made.names[made.origins.index(frozenset(["head"]))]]
-    said = "stop at the last key, beyond which the source turns on"
+    said = "will stay beyond the last key, where the source turns on"
     for curve in spun(source, "XYZ", {1: 0, 25: np.pi / 2}):
         curve.extrapolation = "LINEAR"
     for mode in ("YXZ", "QUATERNION"):
@@ -161,7 +161,7 @@ def test_wheels_go_on_by_whole_turns_or_are_named(keying, turns):
     for curve in spun(source, "XYZ", {1: 0, 25: 2 * np.pi * turns}):
         repeat(curve, "REPEAT_OFFSET")
     assert carry(source="A", target="B", keying=keying) == {"FINISHED"}
-    said = "stop at the last key, beyond which the source turns on"
+    said = "will stay beyond the last key, where the source turns on"
     assert (said in bpy.context.scene.hiermatch_retarget.report.notes) == (turns != 1)
     assert worst(source, target, (1, 7, 13, 25, *((31, 49, 68) if turns == 1 else ()))) < 5e-3
 
