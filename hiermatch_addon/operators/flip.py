@@ -15,8 +15,8 @@ from ..jobs.flipping import FlipJob
 from ..jobs.job_operator import JobOperator
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
-from ..properties.summary import remember
+from ..properties.panel_state import picked, state_of
+from ..properties.summary import is_of_picked, remember
 from ..scene.pair import named_side
 from ..storage.halves import Half, find_half, find_keyed
 
@@ -39,8 +39,8 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
 
     object: bpy.props.StringProperty(
         name="Object",
-        description="Name of one of the two matched objects; if empty, the match that the panel shows is meant, or "
-        "else that of the active object",
+        description="Name of one of the two matched objects; if empty, the match of what is picked in the panel is "
+        "meant, or else that of the active object",
         options={"SKIP_SAVE"},
     )
     alternative: bpy.props.IntProperty(
@@ -83,12 +83,14 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
 
     def _half(self, context: bpy.types.Context) -> Half:
         """Find one side of the match that is meant."""
-        summary, view_layer = state_of(context).summary, view_layer_of(context)
+        state, view_layer = state_of(context), view_layer_of(context)
+        summary = state.summary
         if self.object:
             return find_half(named_side(view_layer, self.object), self.prefix)
-        if summary.key and self.prefix in ("", summary.prefix):
+        of_others = bool(summary.key) and not is_of_picked(cast("bpy.types.Scene", context.scene))
+        if summary.key and self.prefix in ("", summary.prefix) and not of_others:
             role = "target" if summary.swapped else "source"
             return find_keyed(view_layer, summary.key, summary.prefix, role, summary.source)
-        if view_layer.objects.active is None:
+        if view_layer.objects.active is None or (all(picked(state)) and of_others):
             raise ObjectError("There is no match to flip. Match two meshes first, or name one that carries a match.")
         return find_half(view_layer.objects.active, self.prefix)

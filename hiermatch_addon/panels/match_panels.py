@@ -75,8 +75,8 @@ class HIERMATCH_PT_match(bpy.types.Panel):
         state = state_of(context)
         _draw_pair(layout, context, state)
         _draw_run(layout, context, state)
-        if state.summary.points:
-            _draw_summary(layout, context, state.summary)
+        if state.summary.points and not state.summary.hidden:
+            _draw_summary(layout, context, state)
         _draw_options(layout, state)
         _draw_regions(layout, state)
         _draw_output(layout, state)
@@ -205,12 +205,21 @@ def _draw_run(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIE
     copy_options(state, match)
 
 
-def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summary: HIERMATCH_PG_summary) -> None:
-    """Draw how far the last match can be trusted, and its numbers to unfold."""
-    box = layout.box().column()
+def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_scene) -> None:
+    """Draw how far the match of what is picked can be trusted, or else the last match, and its numbers to unfold.
+
+    Of a match that one of its meshes carries no more, no number means anything.
+    """
+    box, summary = layout.box().column(), state.summary
     doubtful = bool(summary.verdict) and summary.confidence < DOUBTFUL
     if summary.stale:
         draw_text(box, context, summary.stale, "ERROR")
+    if summary.lost:
+        return
+    names = (("Source", summary.source), ("Target", summary.target))
+    of_picked = all(picked(state))
+    if not of_picked:
+        _draw_rows(box, *names)
     if summary.verdict:
         draw_text(box, context, summary.verdict, "ERROR" if doubtful else "CHECKMARK")
     else:
@@ -229,8 +238,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, summar
     if body is not None:
         _draw_rows(
             body,
-            ("Source", summary.source),
-            ("Target", summary.target),
+            *(names if of_picked else ()),
             ("Matched Points", str(summary.points)),
             ("Distortion", _judged(summary.stretch, _STRETCH) if summary.verdict else f"{summary.distortion:.4g}"),
             ("Worst Point", "" if summary.verdict else f"{summary.worst_distortion:.3f}"),

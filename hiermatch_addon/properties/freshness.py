@@ -19,6 +19,7 @@ from ..storage.landmark_layer import has_landmarks
 from ..storage.writing import is_marked
 from .panel_state import summary_of
 from .steering_lists import sync_lists
+from .summary import is_of_picked
 
 if TYPE_CHECKING:
     from ..storage.halves import Half
@@ -39,19 +40,26 @@ def refresh(scene: bpy.types.Scene) -> None:
     If one of its meshes was renamed, the panel calls it by its new name.
     """
     summary = summary_of(scene)
-    shown, stale = (summary.stale, summary.source, summary.target), ""
+    before, stale, lost, hidden = _shown(summary), "", False, False
     if summary.key:
         for role, name in _sides(summary):
             carriers = find_carriers(scene.objects, summary.key, summary.prefix, role)
-            stale = stale or _staleness(carriers, name)
+            stale, lost = stale or _staleness(scene, carriers, name), lost or not carriers
             if len(carriers) == 1 and carriers[0].obj.name != name:
                 setattr(summary, "source" if summary.source == name else "target", carriers[0].obj.name)
-    if summary.stale != stale:
-        summary.stale = stale
-    if shown != (summary.stale, summary.source, summary.target):
+        hidden = not is_of_picked(scene)
+    for field, value in (("stale", stale), ("lost", lost), ("hidden", hidden)):
+        if getattr(summary, field) != value:
+            setattr(summary, field, value)
+    if before != _shown(summary):
         # Blender draws again what an operator changed, but not what a timer did.
         redraw_sidebars(cast("bpy.types.WindowManager", bpy.context.window_manager))
     sync_lists(scene)
+
+
+def _shown(summary: HIERMATCH_PG_summary) -> tuple[Any, ...]:
+    """Return that of a summary which `refresh` may change."""
+    return summary.stale, summary.lost, summary.hidden, summary.source, summary.target
 
 
 def _sides(summary: HIERMATCH_PG_summary) -> tuple[tuple[str, str], tuple[str, str]]:
@@ -60,10 +68,13 @@ def _sides(summary: HIERMATCH_PG_summary) -> tuple[tuple[str, str], tuple[str, s
     return ("source", names[0]), ("target", names[1])
 
 
-def _staleness(carriers: list[Half], name: str) -> str:
+def _staleness(scene: bpy.types.Scene, carriers: list[Half], name: str) -> str:
     """Say why a match is out of date on one side: of copies, the one that still has the name counts."""
+    is_there = name in scene.objects or name in bpy.data.collections or " + " in name
+    if not carriers and not is_there:  # what a picker still holds is in the file, but not in the scene
+        return f'The match is out of date: "{name}" was deleted.'
     if not carriers:
-        return f'The match is out of date: "{name}" was deleted, cleared or matched anew. Match again.'
+        return f'The match is out of date: "{name}" was cleared or matched anew. Match again.'
     return next((half for half in carriers if half.obj.name == name), carriers[0]).staleness()
 
 

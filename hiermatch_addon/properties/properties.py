@@ -265,6 +265,12 @@ class HIERMATCH_PG_summary(bpy.types.PropertyGroup):
     stale: _props.StringProperty(
         name="Out of Date", description="Why the match is out of date; empty as long as it is not known to be"
     )
+    lost: _props.BoolProperty(
+        name="Lost", description="Whether one of its meshes was deleted, or carries the match no more"
+    )
+    hidden: _props.BoolProperty(
+        name="Of Others", description="Whether the match is of other meshes than those that are picked"
+    )
     swapped: _props.BoolProperty(
         name="Swapped", description="Whether source and target were exchanged since they were matched"
     )

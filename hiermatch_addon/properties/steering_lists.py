@@ -23,7 +23,16 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.halves import Half
 
-__all__ = ["check_steered", "common_match", "landmark_label", "pair_rows", "point_name", "steered_pair", "sync_lists"]
+__all__ = [
+    "check_steered",
+    "common_match",
+    "landmark_label",
+    "pair_rows",
+    "picked_side",
+    "point_name",
+    "steered_pair",
+    "sync_lists",
+]
 
 
 _REVISIONS = 1 << 30
@@ -43,8 +52,7 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
     """Return what is picked, else that side of the last match, 0 for what is shown as its source."""
     summary = summary_of(scene)
     if chosen is not None:
-        sides = (_picked_side(chosen, layer) for layer in _view_layers(scene))
-        return next((side for side in sides if side is not None), None)
+        return picked_side(scene, chosen)
     if not summary.key:
         return None
     name, role = (summary.source, summary.target)[number], ("source", "target")[number != summary.swapped]
@@ -56,6 +64,12 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
     if named is None and len(found) == 1:  # it was renamed since
         return found[0].obj
     return called if named is None and called is not None and called.type == "MESH" else named
+
+
+def picked_side(scene: bpy.types.Scene, chosen: bpy.types.ID) -> Side | None:
+    """Return the meshes that are meant by what is picked, as far as a view layer has them; None if none has any."""
+    sides = (_picked_side(chosen, layer) for layer in _view_layers(scene))
+    return next((side for side in sides if side is not None), None)
 
 
 def _picked_side(chosen: bpy.types.ID, view_layer: bpy.types.ViewLayer) -> Side | None:

@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
+from ..scene.character import parts_of
+from ..storage.halves import find_carriers
 from ..storage.stored_match import StoredMatch
 from .panel_state import pick, picked, summary_of
-from .steering_lists import common_match
+from .steering_lists import common_match, picked_side
 
 if TYPE_CHECKING:
     from .properties import HIERMATCH_PG_summary
 
-__all__ = ["pick_named", "remember", "remember_common"]
+__all__ = ["is_of_picked", "pick_named", "remember", "remember_common"]
 
 
 def remember(
@@ -69,11 +71,34 @@ def pick_named(scene: bpy.types.Scene, source: str, target: str) -> None:
             pick(state, role, chosen)
 
 
+def is_of_picked(scene: bpy.types.Scene) -> bool:
+    """Tell whether a scene's summary is about what is picked, or about one side of it if nothing else is picked.
+
+    What is picked carries its side of the match then; if none of it is in sight, its name tells.
+    """
+    summary = summary_of(scene)
+    names, roles = (summary.source, summary.target), ("source", "target")
+    for number, chosen in enumerate(picked(cast("Any", scene).hiermatch)):
+        if chosen is None:
+            continue
+        side, role = picked_side(scene, chosen), roles[number != summary.swapped]
+        if side is None and chosen.name != names[number]:
+            return False
+        if side is not None and not find_carriers(parts_of(side), summary.key, summary.prefix, role):
+            return False
+    return True
+
+
 def remember_common(scene: bpy.types.Scene) -> None:
     """Fill a scene's summary with the match of the two meshes that its panels are about, such as after appending them.
 
-    It calls source and target what they do.  If they carry none, or it tells of it already, it stays as it is.
+    It calls source and target what they do.  If they carry none, it is hidden as long as they are picked.
     """
+    _remember_common(scene)
+    summary_of(scene).hidden = not is_of_picked(scene)
+
+
+def _remember_common(scene: bpy.types.Scene) -> None:
     summary, halves = summary_of(scene), common_match(scene)
     if halves is None:
         return
@@ -83,4 +108,4 @@ def remember_common(scene: bpy.types.Scene) -> None:
     source, target = halves[::-1] if swapped else halves
     stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=swapped)
     remember(summary, stored, (source.obj.name, target.obj.name), source.prefix, summary.seconds if same else 0.0)
-    summary.stale = source.staleness() or target.staleness()
+    summary.stale, summary.lost = source.staleness() or target.staleness(), False

@@ -61,6 +61,14 @@ MESSAGES: Final[dict[str, str]] = {
     "Whether source and target were exchanged since they were matched": (
         "マッチング後にソースとターゲットが入れ替えられたかどうか"
     ),
+    "Lost": "消失",
+    "Whether one of its meshes was deleted, or carries the match no more": (
+        "そのメッシュの一方が削除されたか、マッチングをもう持っていないかどうか"
+    ),
+    "Of Others": "別のペア",
+    "Whether the match is of other meshes than those that are picked": (
+        "選ばれているものとは別のメッシュのマッチングかどうか"
+    ),
     "Seconds": "秒",
     "How long the match took; zero if that is not known": "マッチングにかかった時間。不明な場合は0です",
     "Notes": "注記",
@@ -373,11 +381,11 @@ MESSAGES: Final[dict[str, str]] = {
     ): ("マッチングの別の解(左右を入れ替えたものなど)を、再マッチングせずに書き込みます。最初の解に戻すこともできます"),
     "Object": "オブジェクト",
     (
-        "Name of one of the two matched objects; if empty, the match that the panel shows is meant, or else that "
-        "of the active object"
+        "Name of one of the two matched objects; if empty, the match of what is picked in the panel is "
+        "meant, or else that of the active object"
     ): (
-        "マッチングした二つのオブジェクトの一方の名前。空ならパネルに表示中のマッチング、なければアクティブオブ"
-        "ジェクトのもの"
+        "マッチングした二つのオブジェクトの一方の名前。空ならパネルで選ばれているもののマッチング、なけれ"
+        "ばアクティブオブジェクトのマッチング"
     ),
     (
         "What the names that the match wrote start with; needed only for a named or active object that carries "
@@ -2175,10 +2183,10 @@ MESSAGES: Final[dict[str, str]] = {
     "it has other vertices or faces": "頂点か面が異なります",
     "its vertices were moved": "頂点が動かされました",
     "it was mirrored": "ミラーされました",
-    'The match is out of date: "{0}" was deleted, cleared or matched anew. Match again.': (
-        "マッチングが古くなっています。「{0}」が削除、クリア、または再マッチングされました。もう一度マッチン"
-        "グしてください。"
+    'The match is out of date: "{0}" was cleared or matched anew. Match again.': (
+        "マッチングが古くなっています。「{0}」がクリアまたは再マッチングされました。もう一度マッチングしてください。"
     ),
+    'The match is out of date: "{0}" was deleted.': ("マッチングが古くなっています。「{0}」が削除されました。"),
     '"{0}" carries no match. Match it first.': "「{0}」にはマッチングがありません。先にマッチングしてください。",
     '"{0}" carries no match with the Prefix "{1}". Match it first.': (
         "「{0}」には接頭辞「{1}」のマッチングがありません。先にマッチングしてください。"

@@ -49,6 +49,10 @@ MESSAGES: Final[dict[str, str]] = {
     "Why the match is out of date; empty as long as it is not known to be": "匹配过期的原因；未发现过期时为空",
     "Swapped": "已互换",
     "Whether source and target were exchanged since they were matched": "匹配之后源与目标是否被互换",
+    "Lost": "已失去",
+    "Whether one of its meshes was deleted, or carries the match no more": ("其中一个网格是否已被删除或不再带有该匹配"),
+    "Of Others": "其他网格",
+    "Whether the match is of other meshes than those that are picked": ("是否是所选网格以外其他网格的匹配"),
     "Seconds": "秒",
     "How long the match took; zero if that is not known": "匹配所用的时间；未知时为零",
     "Notes": "备注",
@@ -316,9 +320,9 @@ MESSAGES: Final[dict[str, str]] = {
     ): ("写入匹配的另一个解，例如左右互换的解，无需重新匹配。可以恢复第一个解"),
     "Object": "物体",
     (
-        "Name of one of the two matched objects; if empty, the match that the panel shows is meant, or else that "
-        "of the active object"
-    ): "两个已匹配物体之一的名称；为空时指面板所示的匹配，否则指活动物体的匹配",
+        "Name of one of the two matched objects; if empty, the match of what is picked in the panel is "
+        "meant, or else that of the active object"
+    ): "两个已匹配物体之一的名称；为空时指面板中所选物体的匹配，否则指活动物体的匹配",
     (
         "What the names that the match wrote start with; needed only for a named or active object that carries "
         "several matches"
@@ -1794,9 +1798,10 @@ MESSAGES: Final[dict[str, str]] = {
     "it has other vertices or faces": "顶点或面不同",
     "its vertices were moved": "顶点被移动",
     "it was mirrored": "它被镜像",
-    'The match is out of date: "{0}" was deleted, cleared or matched anew. Match again.': (
-        "匹配已过期：“{0}”已被删除、清除或重新匹配。请重新匹配。"
+    'The match is out of date: "{0}" was cleared or matched anew. Match again.': (
+        "匹配已过期：“{0}”已被清除或重新匹配。请重新匹配。"
     ),
+    'The match is out of date: "{0}" was deleted.': "匹配已过期：“{0}”已被删除。",
     '"{0}" carries no match. Match it first.': "“{0}”没有匹配。请先匹配。",
     '"{0}" carries no match with the Prefix "{1}". Match it first.': "“{0}”没有前缀为“{1}”的匹配。请先匹配。",
     '"{0}" carries several matches. Name the Prefix of one of them: {1}.': (

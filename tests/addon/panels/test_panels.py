@@ -378,6 +378,37 @@ def test_a_match_that_is_out_of_date(context):
     assert "The match is out of date" not in texts(draw(context))
 
 
+def test_nothing_is_told_of_the_match_of_others_and_no_number_of_one_that_is_lost(context):
+    summary = context.scene.hiermatch.summary
+    summary.points, summary.verdict, summary.confidence, summary.answers = 5, "So it is.", 0.9, "direct\nmirrored"
+    assert {"So it is.", "90%, good"} <= {entry[1] for entry in draw(context) if entry[0] == "label"}
+    assert ("switch", "hiermatch.flip", False) in draw(context)
+    summary.lost, summary.stale = True, 'The match is out of date: "Cat" was deleted.'
+    drawn = draw(context)
+    assert "was deleted" in texts(drawn)
+    assert "So it is." not in texts(drawn)
+    assert "90%" not in texts(drawn)
+    assert not [entry for entry in drawn if entry[0] == "switch"]
+    summary.lost, summary.hidden = False, True
+    drawn = draw(context)
+    assert "was deleted" not in texts(drawn)
+    assert not [entry for entry in drawn if entry[0] == "switch" or entry[1] in ("So it is.", "hiermatch_details")]
+
+
+def test_the_names_stand_above_the_verdict_as_long_as_no_pair_is_picked(context):
+    state = context.scene.hiermatch
+    state.source, state.target = add_pair()
+    bpy.ops.hiermatch.match(**QUICK)
+
+    def box():
+        drawn = draw(context)
+        return drawn[drawn.index(("operator", "hiermatch.match")) : drawn.index(("panel", "hiermatch_details", True))]
+
+    assert ("label", "Target") not in box()
+    state.source = state.target = None
+    assert box().count(("label", "Target")) == 2  # what it is, and what it is called
+
+
 def test_no_time_is_shown_if_none_is_known(context):
     summary = context.scene.hiermatch.summary
     summary.points, summary.seconds = 5, 0.0

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from hiermatch.hiermatch_addon.panels import steering_panels
+from hiermatch.hiermatch_addon.properties.freshness import refresh
 
 from tests.addon.panels.test_panels import Layout
 from tests.addon.scenes import QUICK, add_pair, snapshot
@@ -150,9 +151,24 @@ def test_picking_two_meshes_tells_of_the_match_that_they_carry():
 
 
 @pytest.mark.usefixtures("pair")
-def test_picking_a_mesh_that_carries_none_leaves_the_summary():
+def test_picking_a_mesh_that_carries_none_leaves_the_summary_but_hides_it():
     state = bpy.context.scene.hiermatch
-    before = snapshot()["summary"]
+    before, target = snapshot()["summary"], state.target
     bpy.ops.mesh.primitive_cube_add()
     state.target = bpy.context.object
+    assert snapshot()["summary"] == {**before, "hidden": True}
+    assert not before["hidden"]
+    refresh(bpy.context.scene)
+    assert snapshot()["summary"] == {**before, "hidden": True}
+    with pytest.raises(RuntimeError, match="There is no match to flip"):
+        bpy.ops.hiermatch.flip()
+    new, name = state.target, target.name
+    target.name, new.name = "Other", name  # a name is none of what carries the match
+    refresh(bpy.context.scene)
+    assert snapshot()["summary"]["hidden"]
+    new.name, target.name = "Cube", name
+    refresh(bpy.context.scene)
+    state.source = None
+    bpy.context.view_layer.objects.active = target
+    state.target = target
     assert snapshot()["summary"] == before

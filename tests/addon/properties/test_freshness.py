@@ -155,7 +155,21 @@ class TestEdits:
     def test_an_object_that_is_gone_or_carries_it_no_more(self, dense_pair):
         bpy.ops.hiermatch.swap()
         bpy.data.objects.remove(dense_pair[1])
-        assert '"Target" was deleted, cleared or matched anew' in stale()
+        assert '"Target" was deleted.' in stale()
+        assert summary().lost
+        assert not summary().hidden  # the source is still picked
+
+    def test_one_that_was_matched_with_another_since(self, dense_pair):
+        assert dense_pair
+        add_blob("Other")
+        bpy.ops.hiermatch.clear(object="Target")
+        assert not summary().points
+        bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK)
+        key = summary().key
+        bpy.ops.hiermatch.match(source="Source", target="Other", **QUICK)
+        summary().key, summary().target = key, "Target"
+        assert '"Source" was cleared or matched anew. Match again' in stale()
+        assert summary().lost
 
     def test_of_copies_the_one_that_kept_its_name(self, dense_pair):
         copy = dense_pair[0].copy()
