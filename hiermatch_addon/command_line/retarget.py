@@ -135,7 +135,8 @@ def run_transfers(
             remember(state_of(context).summary, outcome.stored, names, matching.prefix, outcome.seconds)
         refresh(cast("bpy.types.Scene", context.scene))
         layer = view_layer_of(context)
-        remember_transfer(context, (name_of(layer, source), name_of(layer, target)), carried)
+        panel = getattr(bpy.types, f"HIERMATCH_OT_{operator}").panel
+        remember_transfer(context, panel, (name_of(layer, source), name_of(layer, target)), carried)
         report.add_carried(carried)
         prefix = options.prefix if outcome is None else matching.prefix
         if finish is not None:

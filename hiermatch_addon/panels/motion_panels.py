@@ -108,7 +108,7 @@ class HIERMATCH_PT_motion(bpy.types.Panel):
         button = draw_starter(layout, context, "hiermatch.retarget_pose", "Retarget Pose", "POSE_HLT")
         if button is not None:
             copy_named(options, button, ["keep_hands", "refine"])
-        draw_report(layout, context, options.report)
+        draw_report(layout, context, self.bl_idname, has_before=False)
 
 
 def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None:  # noqa: ANN401 - Blender's own

@@ -16,12 +16,12 @@ from ..transfers.options.my_rig import MyRigOptions
 from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
-from ..transfers.retarget_properties import copy_named, reported_target, retarget_of
+from ..transfers.retarget_properties import copy_named, retarget_of, shown_report, shown_target
 from .panel_text import draw_notes, draw_text
 from .progress_bar import draw_progress, draw_starter
 
 if TYPE_CHECKING:
-    from ..transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
+    from ..transfers.retarget_properties import HIERMATCH_PG_retarget
 
 __all__ = ["HIERMATCH_PT_retarget", "HIERMATCH_PT_symmetry", "draw_report"]
 
@@ -57,7 +57,7 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         button = row.operator("hiermatch.retarget", icon="OUTLINER_OB_ARMATURE")
         names = [name for kind in KINDS.values() for name in option_names(kind)]
         copy_named(state, button, [*KINDS, *names, "refine"])
-        draw_report(layout, context, state.report)
+        draw_report(layout, context, self.bl_idname, has_before=True)
         for switch in KINDS:
             _draw_kind(layout, context, state, switch)
         layout.prop(state, "refine")
@@ -132,9 +132,13 @@ def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
             copy_named(state, button, [*names, "refine"])
 
 
-def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: HIERMATCH_PG_report) -> None:
-    """Draw what became of the last transfer: the verdict, the way to see for oneself, and only then what to check."""
-    if not report.done:
+def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, panel: str, *, has_before: bool) -> None:
+    """Draw what became of the last transfer of a panel: the verdict, the way to see for oneself, and what to check.
+
+    If what was carried can be hidden for a while, the button for that is there, too (`has_before`).
+    """
+    report = shown_report(context, panel)
+    if report is None:
         return
     box = layout.box().column()
     for line in report.done.splitlines():
@@ -142,7 +146,7 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
     for line in report.verdict.splitlines():
         draw_text(box, context, line, "ERROR" if report.doubtful else "INFO")
     box.label(text=f"{report.seconds:.1f} s", icon="TIME")
-    target: Any = reported_target(context)
+    target: Any = shown_target(context, report)
     if target is not None and getattr(target, "type", "") == "ARMATURE":
         armature: bpy.types.Object | None = successor(target)
     else:
@@ -150,9 +154,11 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, report: 
     row = layout.row(align=True)
     pressed = armature is not None and is_exercising(armature)
     poses = row.operator("hiermatch.test_poses", icon="ARMATURE_DATA", depress=pressed)
-    hidden = target is not None and is_before(target)
-    before = row.operator("hiermatch.before_after", icon="ARROW_LEFTRIGHT", depress=hidden)
-    poses.target = before.target = "" if target is None else report.target
+    poses.target = "" if target is None else report.target
+    if has_before:
+        hidden = target is not None and is_before(target)
+        before = row.operator("hiermatch.before_after", icon="ARROW_LEFTRIGHT", depress=hidden)
+        before.target = poses.target
     if report.notes:
         box = layout.box().column()
         for line in report.notes.splitlines():

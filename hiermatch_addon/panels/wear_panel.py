@@ -64,7 +64,7 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         row = layout.row()
         row.scale_y = 1.5
         copy_named(options, row.operator("hiermatch.wear", icon="MATCLOTH"), [*names, "refine"])
-        draw_report(layout, context, options.report)
+        draw_report(layout, context, self.bl_idname, has_before=True)
 
 
 def _item_of(context: bpy.types.Context, active: bpy.types.Object) -> bpy.types.Object:

@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+import secrets
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.character import parts_of
+from ..properties.panel_state import picked, state_of
+from ..scene.character import armatures_above, parts_of, successor
 from ..scene.pair import named_side
 from .options.motion import MotionOptions
 from .options.my_rig import MyRigOptions
@@ -32,13 +34,22 @@ __all__ = [
     "remember_transfer",
     "reported_target",
     "retarget_of",
+    "shown_report",
+    "shown_target",
 ]
+
+_SESSION: Final = secrets.randbelow(1 << 30) + 1
+"""A number of this session: in another one, Blender gives the same objects other numbers."""
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 class HIERMATCH_PG_report(bpy.types.PropertyGroup):
-    """What became of the last transfer; it is there if `done` is not empty."""
+    """What became of a transfer; it is there if `done` is not empty.
+
+    Source and target are known by their names and, as names change and others get them, by the numbers that Blender
+    gives to objects for one session.
+    """
 
     source: _props.StringProperty(name="Source", description="Name of the source object")
     target: _props.StringProperty(name="Target", description="Name of the target object; of several, of the last one")
@@ -56,6 +67,15 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     )
     doubtful: _props.BoolProperty(name="Doubtful", description="Whether one of the matches is not to be trusted")
     seconds: _props.FloatProperty(name="Seconds", description="How long it took")
+    source_uid: _props.IntProperty(
+        name="Source Number", description="By what number Blender knows the first object of the source"
+    )
+    target_uid: _props.IntProperty(
+        name="Target Number", description="By what number Blender knows the first object of the target"
+    )
+    session: _props.IntProperty(
+        name="Session", description="In which session these numbers hold; in others, names are gone by"
+    )
 
 
 class HIERMATCH_PG_retarget(
@@ -73,6 +93,11 @@ class HIERMATCH_PG_retarget(
     report: _props.PointerProperty(
         name="Report", description="What became of the last transfer", type=HIERMATCH_PG_report
     )
+    reports: _props.CollectionProperty(
+        name="Reports",
+        description="What became of the last transfer of each panel, by the panel's identifier",
+        type=HIERMATCH_PG_report,
+    )
 
 
 def retarget_of(context: bpy.types.Context) -> HIERMATCH_PG_retarget:
@@ -82,12 +107,59 @@ def retarget_of(context: bpy.types.Context) -> HIERMATCH_PG_retarget:
 
 def reported_target(context: bpy.types.Context) -> Side | None:
     """Return the target of the last transfer; None if nothing in the view layer has its name any more."""
-    layer, name = view_layer_of(context), retarget_of(context).report.target
+    report = retarget_of(context).report
+    return _named(context, report.target) if _first_object(context, report, "target") is not None else None
+
+
+def shown_report(context: bpy.types.Context, panel: str) -> HIERMATCH_PG_report | None:
+    """Return what a panel tells of the last transfer that was started from it.
+
+    It is about the two that were its source and its target: it is shown as long as the target is there and nothing else
+    is picked in place of one of them.
+    """
+    report: Any = cast("Any", retarget_of(context)).reports.get(panel)
+    if report is None or not report.done or _first_object(context, report, "target") is None:
+        return None
+    for role, chosen in zip(("source", "target"), picked(state_of(context)), strict=True):
+        obj = _first_object(context, report, role)
+        if chosen is not None and (obj is None or not _is_of(obj, chosen)):
+            return None
+    return cast("HIERMATCH_PG_report", report)
+
+
+def shown_target(context: bpy.types.Context, report: HIERMATCH_PG_report) -> Side | None:
+    """Return the target of a report by its name; None if it was renamed."""
+    target, first = _named(context, report.target), _first_object(context, report, "target")
+    return target if target is not None and first in parts_of(target) else None
+
+
+def _named(context: bpy.types.Context, name: str) -> Side | None:
+    """Return what has a name, if all of it is in the view layer."""
+    layer = view_layer_of(context)
     try:
-        target = named_side(layer, name) if name else None
+        side = named_side(layer, name) if name else None
     except ObjectError:
         return None
-    return target if target is not None and all(part.name in layer.objects for part in parts_of(target)) else None
+    return side if side is not None and all(part.name in layer.objects for part in parts_of(side)) else None
+
+
+def _first_object(context: bpy.types.Context, report: HIERMATCH_PG_report, role: str) -> bpy.types.Object | None:
+    """Return the first object of the source or the target of a report, if it is still in the view layer."""
+    if report.session == _SESSION:
+        uid = getattr(report, f"{role}_uid")
+        objects: Any = view_layer_of(context).objects  # None among them: it is being removed
+        return next((obj for obj in objects if obj is not None and obj.session_uid == uid), None)
+    side = _named(context, getattr(report, role))
+    return None if side is None else parts_of(side)[0]
+
+
+def _is_of(obj: bpy.types.Object, chosen: bpy.types.ID) -> bool:
+    """Tell whether an object is what is picked, or one of the same character."""
+    if isinstance(chosen, bpy.types.Collection):
+        return obj.name in chosen.all_objects
+    own: Any = chosen
+    rigs = armatures_above(own) | ({successor(own)} if own.type == "ARMATURE" else set())
+    return obj == own or obj in own.children_recursive or not rigs.isdisjoint(armatures_above(obj))
 
 
 def copy_named(source: object, target: object, names: Iterable[str]) -> None:
@@ -97,14 +169,16 @@ def copy_named(source: object, target: object, names: Iterable[str]) -> None:
 
 
 def remember_transfer(
-    context: bpy.types.Context, names: tuple[str, str], carried: list[Carried], left_out: str = ""
+    context: bpy.types.Context, panel: str, names: tuple[str, str], carried: list[Carried], left_out: str = ""
 ) -> None:
-    """Fill the report of what was carried.
+    """Fill the report of what was carried, and that of a panel.
 
     Parameters
     ----------
     context : bpy.types.Context
         Where it was.
+    panel : str
+        Identifier of the panel that it was started from.
     names : (str, str)
         By what the source and the last target are found again, see `name_of`.
     carried : list of Carried
@@ -112,8 +186,19 @@ def remember_transfer(
     left_out : str
         Which selected meshes were no targets, as a sentence.
     """
-    report: Any = retarget_of(context).report
-    report.source, report.target = names
+    options: Any = retarget_of(context)
+    if panel not in options.reports:
+        options.reports.add().name = panel
+    for report in (options.report, options.reports[panel]):
+        report.source, report.target = names
+        sides = [_named(context, name) for name in names]
+        report.source_uid, report.target_uid = (0 if side is None else parts_of(side)[0].session_uid for side in sides)
+        report.session = _SESSION
+        _tell(report, carried, left_out)
+
+
+def _tell(report: Any, carried: list[Carried], left_out: str) -> None:  # noqa: ANN401 - HIERMATCH_PG_report
+    """Write into a report what was carried."""
     done = []
     for one in carried:
         what = [part.done for part in one.reports if part.done]

@@ -670,6 +670,18 @@ MESSAGES: Final[dict[str, str]] = {
         "何が省かれたか、または知っておくべきことと、その理由。一行に一文です"
     ),
     "How long it took": "かかった時間",
+    "Source Number": "ソースの番号",
+    "By what number Blender knows the first object of the source": (
+        "Blenderがソースの最初のオブジェクトを識別する番号"
+    ),
+    "Target Number": "ターゲットの番号",
+    "By what number Blender knows the first object of the target": (
+        "Blenderがターゲットの最初のオブジェクトを識別する番号"
+    ),
+    "Session": "セッション",
+    "In which session these numbers hold; in others, names are gone by": (
+        "これらの番号が有効なセッション。ほかのセッションでは名前で探します"
+    ),
     "Refine with Rig": "リグで改良",
     "Accept Doubtful": "疑わしくても書き込む",
     (
@@ -690,6 +702,10 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Report": "レポート",
     "What became of the last transfer": "最後の転送の結果",
+    "Reports": "レポート一覧",
+    "What became of the last transfer of each panel, by the panel's identifier": (
+        "各パネルの最後の転送の結果。パネルの識別子ごと"
+    ),
     "Rig": "リグ",
     (
         "Give the target a copy of the source's armature, fitted into its body, and bind it. Left out if the "
@@ -1407,17 +1423,17 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Before and After": "前と後",
     (
-        "Show the target as it stood before it got rig and shape keys; pressed again, as it is now, with the "
-        "pose that it was in"
-    ): "リグとシェイプキーを受け取る前のターゲットを表示します。もう一度押すと、今の状態とポーズに戻ります",
+        "Show the target as it stood before it got rig, shape keys and clothes; pressed again, as it is "
+        "now, with the pose that it was in"
+    ): ("リグ、シェイプキー、衣服を受け取る前のターゲットを表示します。もう一度押すと、今の状態とポーズに戻ります"),
     (
         "Name of the mesh; if empty, the one picked in the panel, that of the last retarget, or else the active object"
     ): "メッシュの名前。空の場合は、パネルで選んだもの、最後のリターゲットのもの、またはアクティブオブジェクト",
     '"{0}" is shown as it is': "「{0}」を今の状態で表示しています",
     '"{0}" is shown as it was before': "「{0}」を元の状態で表示しています",
-    '"{0}" has no rig or shape keys that came from a source. Retarget it first.': (
-        "「{0}」にはソースから来たリグもシェイプキーもありません。先にリターゲットしてください。"
-    ),
+    (
+        '"{0}" has no rig, shape keys or clothes that came from a source, so it is as it was before.'
+    ): "「{0}」にはソースから来たリグ、シェイプキー、衣服がないので、元のままです。",
     "It is open which character is meant. Pick it as the Target, or make it the active object.": (
         "どのキャラクターかが決まっていません。ターゲットに選ぶか、アクティブオブジェクトにしてください。"
     ),

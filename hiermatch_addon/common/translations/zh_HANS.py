@@ -551,6 +551,12 @@ MESSAGES: Final[dict[str, str]] = {
         "省略了什么或应了解什么，以及原因：每行一句"
     ),
     "How long it took": "所用时间",
+    "Source Number": "源编号",
+    "By what number Blender knows the first object of the source": "Blender 识别源的第一个物体的编号",
+    "Target Number": "目标编号",
+    "By what number Blender knows the first object of the target": "Blender 识别目标的第一个物体的编号",
+    "Session": "会话",
+    "In which session these numbers hold; in others, names are gone by": ("这些编号有效的会话；在其他会话中按名称查找"),
     "Refine with Rig": "用绑定改善",
     "Accept Doubtful": "接受可疑匹配",
     (
@@ -571,6 +577,10 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Report": "报告",
     "What became of the last transfer": "上一次传递的结果",
+    "Reports": "报告列表",
+    "What became of the last transfer of each panel, by the panel's identifier": (
+        "各面板上一次传递的结果，按面板标识符"
+    ),
     "Rig": "绑定",
     (
         "Give the target a copy of the source's armature, fitted into its body, and bind it. Left out if the "
@@ -1151,17 +1161,17 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "Before and After": "前后对比",
     (
-        "Show the target as it stood before it got rig and shape keys; pressed again, as it is now, with the "
-        "pose that it was in"
-    ): "显示目标获得骨架和形态键之前的样子；再按一次则恢复现在的样子和姿势",
+        "Show the target as it stood before it got rig, shape keys and clothes; pressed again, as it is "
+        "now, with the pose that it was in"
+    ): "显示目标获得骨架、形态键和服装之前的样子；再按一次则恢复现在的样子和姿势",
     (
         "Name of the mesh; if empty, the one picked in the panel, that of the last retarget, or else the active object"
     ): "网格的名称；为空时使用面板中选取的物体、上次重定向的物体，否则使用活动物体",
     '"{0}" is shown as it is': "“{0}”以现在的样子显示",
     '"{0}" is shown as it was before': "“{0}”以之前的样子显示",
-    '"{0}" has no rig or shape keys that came from a source. Retarget it first.': (
-        "“{0}”没有来自源的骨架或形态键。请先重定向。"
-    ),
+    (
+        '"{0}" has no rig, shape keys or clothes that came from a source, so it is as it was before.'
+    ): "“{0}”没有来自源的骨架、形态键或服装，因此就是之前的样子。",
     "It is open which character is meant. Pick it as the Target, or make it the active object.": (
         "不清楚指的是哪个角色。请将其选为目标，或设为活动物体。"
     ),

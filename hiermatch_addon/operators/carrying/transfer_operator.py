@@ -204,7 +204,7 @@ class TransferOperator(JobOperator):
                 prefix = self.prefix or state_of(context).prefix
                 remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
         refresh(scene)
-        remember_transfer(context, (self.source, self.targets[-1].name), carried, self._left_out)
+        remember_transfer(context, self.panel, (self.source, self.targets[-1].name), carried, self._left_out)
         self._report(carried)
         return {"FINISHED"}
 

@@ -29,13 +29,13 @@ __all__ = ["HIERMATCH_OT_before_after"]
 
 
 class HIERMATCH_OT_before_after(bpy.types.Operator):
-    """Show a target without its new rig and shape keys, and again with them."""
+    """Show a target without its new rig, shape keys and clothes, and again with them."""
 
     bl_idname = "hiermatch.before_after"
     bl_label = "Before and After"
     bl_description = (
-        "Show the target as it stood before it got rig and shape keys; pressed again, as it is now, with the pose that "
-        "it was in"
+        "Show the target as it stood before it got rig, shape keys and clothes; pressed again, as it is now, with the "
+        "pose that it was in"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -63,7 +63,8 @@ class HIERMATCH_OT_before_after(bpy.types.Operator):
                 return {"FINISHED"}
             if not show_before(target, _source_of(context)):
                 raise ObjectError(
-                    f'"{target.name}" has no rig or shape keys that came from a source. Retarget it first.'
+                    f'"{target.name}" has no rig, shape keys or clothes that came from a source, so it is as it was '
+                    "before."
                 )
         except HierMatchError as error:
             self.report({"ERROR"}, translated(str(error)))

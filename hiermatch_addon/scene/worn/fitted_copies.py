@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BODY",
+    "COVERED",
     "ITEM",
     "adopt",
     "as_fitted",
@@ -42,6 +43,9 @@ __all__ = [
 
 ITEM, BODY = "hiermatch_item", FITTED_TO
 """Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
+
+COVERED: Final = "Below Clothes"
+"""Name of the group, the key and the modifier by which a body is drawn in or hidden below clothes."""
 
 _ITEM_MARK: Final = "hiermatch_item_name"
 """Custom property of an item: what it was called when it was fitted last."""

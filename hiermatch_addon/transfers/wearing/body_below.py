@@ -14,7 +14,7 @@ from ...scene.character import parts_of, read_surface, vertex_ranges
 from ...scene.deform_layer import write_weights
 from ...scene.mesh_io import read_mesh
 from ...scene.shape_key_io import KeySettings, add_keys, keys_of
-from ...scene.worn.fitted_copies import ITEM, fitted_to
+from ...scene.worn.fitted_copies import COVERED, ITEM, fitted_to
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -24,10 +24,7 @@ if TYPE_CHECKING:
 
     from ...scene.character import Side
 
-__all__ = ["COVERED", "cover_body", "covered_vertices", "worn_already"]
-
-COVERED = "Below Clothes"
-"""Name of the group, the key and the modifier on the body."""
+__all__ = ["cover_body", "covered_vertices", "worn_already"]
 
 _REACH = 0.03
 """How far above the skin, in the root of the body's area, clothes are looked for."""

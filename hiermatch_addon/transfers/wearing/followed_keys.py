@@ -23,7 +23,7 @@ from ...scene.shape_key_io import (
     read_offsets,
     shape_key_names,
 )
-from .body_below import COVERED
+from ...scene.worn.fitted_copies import COVERED
 
 if TYPE_CHECKING:
     import bpy

@@ -16,6 +16,7 @@ from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
 from ...scene.mesh_io import without_other_vertices
 from ...scene.pair import named_object
+from ...scene.posing.before_after import show_after
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
 from ...scene.worn.garments import bound_items, check_item, dressed_at_rest
@@ -181,7 +182,8 @@ class WearTransfer(Transfer):
             still_there(item)
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
-        """Write the fitted items."""
+        """Write the fitted items, on the target as it is now."""
+        show_after(target)
         items = [still_there(item) for item in self._items]
         reports = [transfer.write(context, source, target) for transfer in self._first]
         notes = [*self._notes, *(note for report in reports for note in report.notes)]

@@ -14,8 +14,9 @@ from hiermatch.hiermatch_addon.panels import answer_menu, retarget_panels
 from hiermatch.hiermatch_addon.panels import match_panels as panels
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES
 from hiermatch.hiermatch_addon.properties.setting_groups import shown_groups
+from hiermatch.hiermatch_addon.transfers.retarget_properties import remember_transfer, shown_report
 
-from tests.addon.scenes import QUICK, add_pair, snapshot
+from tests.addon.scenes import QUICK, add_blob, add_pair, snapshot
 
 KINDS = ("weights", "shape_keys", "uvs", "attributes")
 ELSEWHERE = {f"hiermatch.{name}" for name in ("swap", "clear", "add_demo_pair", "export_match", "import_match")}
@@ -80,6 +81,15 @@ def context():
         preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
         space_data=SimpleNamespace(shading=shading),
     )
+
+
+def tell(panel, source="Source", target="Target", **values):
+    """Let a panel tell of a transfer."""
+    remember_transfer(bpy.context, panel, (source, target), [])
+    report = bpy.context.scene.hiermatch_retarget.reports[panel]
+    for name, value in {"done": "Carried.", **values}.items():
+        setattr(report, name, value)
+    return report
 
 
 def draw(context):
@@ -336,8 +346,9 @@ def test_the_button_and_the_result_come_before_all_that_unfolds(context):
 
 
 def test_the_way_to_see_for_oneself_is_not_below_what_is_to_be_checked(context):
-    report = context.scene.hiermatch_retarget.report
-    report.done, report.verdict, report.notes = "Carried.", "Confidence 83%: so it is.", "Check this.\nCheck that."
+    add_pair()
+    said = {"verdict": "Confidence 83%: so it is.", "notes": "Check this.\nCheck that."}
+    tell("HIERMATCH_PT_retarget", **said)
     drawn = []
     panel = SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_retarget")
     retarget_panels.HIERMATCH_PT_retarget.draw(panel, context)
@@ -354,11 +365,13 @@ def test_the_buttons_below_a_report_mean_what_is_picked_if_its_target_has_anothe
         return buttons.setdefault(name, SimpleNamespace())
 
     def drawn():
-        retarget_panels.draw_report(Layout([]), context, report)
+        buttons.clear()
+        retarget_panels.draw_report(Layout([]), context, "HIERMATCH_PT_retarget", has_before=True)
         return {buttons[f"hiermatch.{name}"].target for name in ("test_poses", "before_after")}
 
-    target, report = add_pair()[1], context.scene.hiermatch_retarget.report
-    report.done, report.target = "Carried.", name
+    target = add_pair()[1]
+    report = tell("HIERMATCH_PT_retarget", target="Target")
+    report.target = name
     monkeypatch.setattr(Layout, "operator", operator)
     assert drawn() == {name}
     context.scene.hiermatch.target = target
@@ -368,6 +381,76 @@ def test_the_buttons_below_a_report_mean_what_is_picked_if_its_target_has_anothe
     context.scene.hiermatch.target = None
     with pytest.raises(ObjectError, match="It is open which character is meant"):
         meant_target(bpy.context, "")
+
+
+PANELS = ("HIERMATCH_PT_retarget", "HIERMATCH_PT_motion", "HIERMATCH_PT_wear")
+
+
+class TestReports:
+    """A report is shown in the panel of its work, while its objects are there and are the ones that are picked."""
+
+    def test_each_panel_has_its_own(self, context):
+        add_pair()
+        tell(PANELS[2], done="2 items")
+        assert [shown_report(context, panel) is not None for panel in PANELS] == [False, False, True]
+        tell(PANELS[0], done="A rig")
+        found = [shown_report(context, panel) for panel in PANELS]
+        assert [one and one.done for one in found] == ["A rig", None, "2 items"]
+
+    def test_while_others_are_picked_it_is_not_shown(self, context):
+        (source, target), other, state = add_pair(), add_blob("Other"), context.scene.hiermatch
+        tell(PANELS[0])
+        for picks, is_shown in (
+            ((source, target), True),
+            ((None, target), True),
+            ((source, None), True),
+            ((source, other), False),
+            ((other, target), False),
+            ((other, None), False),
+        ):
+            state.source, state.target = picks
+            assert (shown_report(context, PANELS[0]) is not None) == is_shown, picks
+
+    def test_a_character_may_be_picked_by_its_armature_or_a_collection(self, context):
+        target, state = add_pair()[1], context.scene.hiermatch
+        tell(PANELS[0])
+        rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+        held, other = bpy.data.collections.new("Held"), bpy.data.collections.new("Other")
+        for collection in (held, other):
+            context.scene.collection.children.link(collection)
+        held.objects.link(rig)
+        held.objects.link(target)
+        state.target = rig
+        assert shown_report(context, PANELS[0]) is None
+        target.parent = rig
+        assert shown_report(context, PANELS[0]) is not None
+        state.target, state.target_collection = None, other
+        assert shown_report(context, PANELS[0]) is None
+        state.target_collection = held
+        assert shown_report(context, PANELS[0]) is not None
+
+    def test_it_ends_with_its_target_but_not_with_its_source(self, context):
+        source, target = add_pair()
+        tell(PANELS[0])
+        bpy.data.objects.remove(source)
+        assert shown_report(context, PANELS[0]) is not None
+        context.scene.hiermatch.target = target  # which keeps it in the file
+        target.users_collection[0].objects.unlink(target)
+        bpy.context.view_layer.update()
+        assert shown_report(context, PANELS[0]) is None
+        context.scene.hiermatch.target = None
+        target.name = "Gone"
+        add_blob("Target")
+        assert shown_report(context, PANELS[0]) is None
+
+    def test_in_another_session_it_goes_by_names(self, context):
+        target = add_pair()[1]
+        report = tell(PANELS[0])
+        report.session, report.target_uid, report.source_uid = report.session + 1, 1, 1
+        context.scene.hiermatch.target = target
+        assert shown_report(context, PANELS[0]) is not None
+        target.name = "Other"
+        assert shown_report(context, PANELS[0]) is None
 
 
 def test_a_match_that_is_out_of_date(context):

@@ -10,8 +10,8 @@ from hiermatch.hiermatch_addon.operators.carrying.transfer_operator import Trans
 from hiermatch.hiermatch_addon.operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from hiermatch.hiermatch_addon.panels import retarget_panels
 
-from tests.addon.panels.test_panels import Layout, texts
-from tests.addon.scenes import snapshot
+from tests.addon.panels.test_panels import Layout, tell, texts
+from tests.addon.scenes import add_pair, snapshot
 
 
 @pytest.fixture
@@ -64,8 +64,9 @@ def test_a_match_to_be_trusted_is_told_as_well(dense_pair):
 
 @pytest.mark.parametrize("doubt", [False, True])
 def test_no_check_mark_stands_before_what_is_doubtful(doubt):
-    report = bpy.context.scene.hiermatch_retarget.report
-    report.done, report.verdict, report.doubtful = 'Carried to "Cat": nothing', "Confidence 4%: Do not trust it.", doubt
+    add_pair()
+    said = {"done": 'Carried to "Cat": nothing', "verdict": "Confidence 4%: Do not trust it.", "doubtful": doubt}
+    tell("HIERMATCH_PT_retarget", **said)
     icons = []
 
     class Icons(Layout):
@@ -82,7 +83,7 @@ def test_no_check_mark_stands_before_what_is_doubtful(doubt):
     own = {"scene": bpy.context.scene, "view_layer": bpy.context.view_layer}
     context = SimpleNamespace(region=SimpleNamespace(width=300), preferences=system, **own)
     drawn = []
-    retarget_panels.draw_report(Icons(drawn), context, report)
+    retarget_panels.draw_report(Icons(drawn), context, "HIERMATCH_PT_retarget", has_before=True)
     assert "Confidence 4%" in texts(drawn)
     assert ("CHECKMARK" in icons) == (not doubt)
 

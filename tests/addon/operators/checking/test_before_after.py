@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.scene.posing.before_after import is_before
 
+from tests.addon.garments import add_item, fitted, wear
 from tests.addon.operators.carrying.test_fit_rig import add_weights, shown
 from tests.addon.operators.carrying.test_fit_rig import fit as fit_rig
 from tests.addon.operators.carrying.test_rest_like_source import fit
@@ -59,5 +60,35 @@ def test_what_is_carried_again_is_shown_as_it_is(dense_pair):
 
 def test_what_got_nothing_has_no_before():
     add_rigged()
-    with pytest.raises(RuntimeError, match="Retarget it first"):
+    with pytest.raises(RuntimeError, match="so it is as it was before"):
         bpy.ops.hiermatch.before_after(target="Source")
+
+
+@pytest.mark.parametrize("below", ["NONE", "KEY", "MASK"])
+def test_clothes_are_taken_off_for_a_while(dense_pair, below):
+    source, target = dense_pair
+    add_item(source, "Shirt", 0.02)
+    bpy.context.scene.hiermatch.source = bpy.context.scene.hiermatch.target = None
+    assert wear("Shirt", wear_hide=below) == {"FINISHED"}
+    copy = fitted("Shirt")
+
+    def covered():
+        keys = target.data.shape_keys
+        key = None if keys is None else keys.key_blocks.get("Below Clothes")
+        mask = target.modifiers.get("Below Clothes")
+        return [not copy.hide_viewport, key is not None and not key.mute, mask is not None and mask.show_viewport]
+
+    now = covered()
+    assert now == [True, below == "KEY", below == "MASK"]
+    assert bpy.ops.hiermatch.before_after(target="Target") == {"FINISHED"}
+    assert is_before(target)
+    assert covered() == [False, False, False]
+    assert bpy.ops.hiermatch.before_after(target="Target") == {"FINISHED"}
+    assert not is_before(target)
+    assert covered() == now
+    assert not [name for name in copy.keys() if name.startswith("hiermatch_before")]  # noqa: SIM118
+    assert bpy.ops.hiermatch.before_after(target="Target") == {"FINISHED"}
+    assert wear("Shirt", wear_hide=below) == {"FINISHED"}
+    copy = fitted("Shirt")
+    assert covered() == now
+    assert not is_before(target)
