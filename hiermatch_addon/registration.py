@@ -81,6 +81,7 @@ from .properties.freshness import start_watching, stop_watching
 from .properties.preferences import HIERMATCH_AP_preferences
 from .properties.properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 from .properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair, HIERMATCH_PG_steering
+from .properties.viewport_shading import start_following, stop_following
 from .transfers.options.wear import HIERMATCH_PG_worn
 from .transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
 
@@ -193,6 +194,7 @@ def register() -> None:
     setattr(bpy.types.Scene, _TABLE, table)
     register_presets()
     start_watching()
+    start_following()
     register_command()
     start_overlay()
 
@@ -202,6 +204,7 @@ def unregister() -> None:
     close_helpers()
     stop_overlay()
     unregister_command()
+    stop_following()
     stop_watching()
     unregister_presets()
     delattr(bpy.types.Scene, _TABLE)

@@ -17,6 +17,7 @@ from ..common.translated_text import translated
 from ..jobs.running import can_start
 from ..properties.steering_lists import check_steered, common_match
 from ..properties.steering_properties import steering_of
+from ..properties.viewport_shading import shade_as_before, shade_by_colors
 from ..scene.character import parts_of
 from ..scene.pair import check_mode, check_writable
 from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
@@ -74,7 +75,8 @@ class HIERMATCH_OT_show(bpy.types.Operator):
         """Show it, and remember what was shown before."""
         try:
             if self.view == "NONE":
-                _go_back(context)
+                if not _go_back(context):
+                    return {"CANCELLED"}  # else it would be a step to undo, and what was undone could not be redone
             else:
                 _show(context, _match_of(context), self.view)
         except HierMatchError as error:
@@ -113,48 +115,35 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
 
 def _show(context: bpy.types.Context, halves: tuple[Half, Half], view: str) -> None:
     prepare_view(context, halves, view)
-    steering, here = steering_of(context), _shading(context.space_data)
+    steering = steering_of(context)
     before = _before(steering)
     for mesh in (mesh_of(part) for half in halves for part in parts_of(half.obj)):
-        before["meshes"].setdefault(mesh.name, mesh.attributes.active_color_name or "")
+        before.setdefault(mesh.name, mesh.attributes.active_color_name or "")
         show_attribute(mesh, attribute_of(halves[0].prefix, view))
-    for place, shading in _viewports().items():
-        if shading == here:
-            kind, shading.type = shading.type, "SOLID"
-            before["viewports"].setdefault(place, [kind, shading.color_type])
-            shading.color_type = "VERTEX"
     steering.before = json.dumps(before)
+    shade_by_colors(context.space_data)
 
 
-def _go_back(context: bpy.types.Context) -> None:
-    """Show what was shown before the first view, of all meshes and in all viewports that show one since."""
-    steering, viewports = steering_of(context), _viewports()
-    before = _before(steering)
-    for name, color in before["meshes"].items():
+def _go_back(context: bpy.types.Context) -> bool:
+    """Show what was shown before the first view, of all meshes and in all viewports that show one since.
+
+    Returns
+    -------
+    bool
+        Whether anything else was shown.
+    """
+    steering = steering_of(context)
+    changed = bool(steering.before)
+    for name, color in _before(steering).items():
         mesh = bpy.data.meshes.get(name)
         if mesh is not None and mesh.library is None:
             show_attribute(mesh, color)
-    for place, (kind, color) in before["viewports"].items():
-        shading = viewports.get(place)
-        if shading is not None and (shading.type, shading.color_type) == ("SOLID", "VERTEX"):
-            shading.color_type = color
-            shading.type = kind
-    steering.before = ""
+    if changed:
+        steering.before = ""
+    return shade_as_before() or changed
 
 
-def _before(steering: HIERMATCH_PG_steering) -> dict[str, dict[str, Any]]:
-    """Return the color attributes that meshes showed before, and how viewports were shaded, by names and places."""
-    before: dict[str, Any] = json.loads(steering.before or "{}")
-    return {kind: before.get(kind, {}) for kind in ("meshes", "viewports")}
-
-
-def _viewports() -> dict[str, Any]:
-    """Return how the viewports of all screens are shaded, by where they are."""
-    areas = ((screen, number, area) for screen in bpy.data.screens for number, area in enumerate(screen.areas))
-    found = {f"{screen.name}/{number}": _shading(area.spaces.active) for screen, number, area in areas}
-    return {place: shading for place, shading in found.items() if shading is not None}
-
-
-def _shading(space: bpy.types.Space | None) -> Any:  # noqa: ANN401 - one viewport's shading, or None
-    """Return how a viewport is shaded; None if it is no viewport."""
-    return cast("Any", space).shading if space is not None and space.type == "VIEW_3D" else None
+def _before(steering: HIERMATCH_PG_steering) -> dict[str, str]:
+    """Return which color attributes meshes showed before, by their names."""
+    found: dict[str, str] = json.loads(steering.before or "{}")
+    return found

@@ -122,6 +122,39 @@ class TestViews:
             space.shading.type = "SOLID"
         assert [space.shading.color_type for space in spaces] == ["OBJECT", "RANDOM"]
 
+    def test_undo_brings_the_viewport_back_too(self, dense_pair):
+        area = bpy.context.screen.areas[0]
+        area.type = "VIEW_3D"
+        shading = area.spaces.active.shading
+        shading.type, shading.color_type = "SOLID", "OBJECT"
+        before = active(dense_pair)
+        bpy.ops.ed.undo_push(message="Before")
+        with bpy.context.temp_override(area=area, space_data=area.spaces.active):
+            for view in ("MATCH", "CHECKER"):
+                show(view)
+                bpy.ops.ed.undo_push(message=view)
+            shading = area.spaces.active.shading
+            bpy.ops.ed.undo()
+            assert (shading.type, shading.color_type) == ("SOLID", "VERTEX")
+            bpy.ops.ed.undo()
+            assert (shading.type, shading.color_type) == ("SOLID", "OBJECT")
+            assert active([bpy.data.objects[name] for name in ("Source", "Target")]) == before
+            assert bpy.ops.hiermatch.show(view="NONE") == {"CANCELLED"}  # so that there is still something to redo
+            bpy.ops.ed.redo()
+            assert bpy.context.scene.hiermatch_steering.before
+
+    def test_nothing_brings_back_a_viewport_whose_meshes_were_taken_back_already(self, dense_pair):
+        area = bpy.context.screen.areas[0]
+        area.type = "VIEW_3D"
+        shading = area.spaces.active.shading
+        shading.type = "MATERIAL"
+        with bpy.context.temp_override(area=area, space_data=area.spaces.active):
+            show("MATCH")
+            bpy.context.scene.hiermatch_steering.before = ""  # as in a file in which the scene is another one
+            show("NONE")
+        assert shading.type == "MATERIAL"
+        assert dense_pair
+
     def test_the_viewport(self, dense_pair):
         assert dense_pair
         area = next((area for area in bpy.context.screen.areas if area.type == "VIEW_3D"), None)
@@ -193,7 +226,7 @@ class TestViews:
             bpy.ops.hiermatch.show(view="MATCH")
         with pytest.raises(RuntimeError, match="no match to show"):
             bpy.ops.hiermatch.write_regions()
-        show("NONE")
+        assert bpy.ops.hiermatch.show(view="NONE") == {"CANCELLED"}
 
     def test_of_a_mesh_that_was_edited(self, dense_pair):
         dense_pair[1].data.vertices[3].co.x += 1
