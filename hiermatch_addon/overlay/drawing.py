@@ -232,15 +232,22 @@ def start_overlay() -> None:
     """Let the viewports be drawn over."""
     for draw, when in ((_overlay.draw_view, "POST_VIEW"), (_overlay.draw_pixels, "POST_PIXEL")):
         _overlay.handles.append(bpy.types.SpaceView3D.draw_handler_add(draw, (), "WINDOW", when))
-    cast("Any", bpy.app.handlers).depsgraph_update_post.append(_on_update)
+    for handlers, function in _handlers():
+        handlers.append(function)
 
 
 def stop_overlay() -> None:
     """Undo `start_overlay`."""
-    cast("Any", bpy.app.handlers).depsgraph_update_post.remove(_on_update)
+    for handlers, function in _handlers():
+        handlers.remove(function)
     while _overlay.handles:
         bpy.types.SpaceView3D.draw_handler_remove(_overlay.handles.pop(), "WINDOW")
     _overlay.forget()
+
+
+def _handlers() -> tuple[tuple[list[Any], Any], ...]:
+    handlers: Any = bpy.app.handlers
+    return (handlers.depsgraph_update_post, _on_update), (handlers.frame_change_post, _on_frame)
 
 
 def _eye(context: bpy.types.Context) -> tuple[NDArray[np.float64], tuple[int, int]]:
@@ -254,3 +261,9 @@ def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Look again where the vertices are, if the shape of anything has changed."""
     if any(update.is_updated_geometry for update in depsgraph.updates):
         _overlay.edited = True
+
+
+@persistent  # type: ignore[untyped-decorator]
+def _on_frame(*_arguments: object) -> None:
+    """Look again where the vertices are: what a new frame moves is told as no update."""
+    _overlay.edited = True

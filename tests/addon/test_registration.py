@@ -53,7 +53,7 @@ def test_unregister_leaves_nothing_and_register_comes_back(extension):
     finally:
         extension.register()
     assert bpy.context.scene.hiermatch.points == MatchSettings().points
-    assert len(our_handlers()) == 7
+    assert len(our_handlers()) == 8
     assert {cls.bl_idname.split(".")[1] for cls in OPERATORS} == set(dir(bpy.ops.hiermatch))
 
 

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import Preview
+from hiermatch.hiermatch_addon.overlay import drawing as drawn
 from hiermatch.hiermatch_addon.overlay.overlay_data import (
     Marks,
     Places,
@@ -191,6 +192,22 @@ class TestScene:
         after = self.read().points[0].positions
         half = len(before) // 2
         assert after[:half] - before[:half] == pytest.approx(np.tile([0, 0, 1], (half, 1)), abs=1e-5)
+
+    def test_it_is_read_again_in_another_frame(self, pair):
+        obj = pair[0]
+        obj.shape_key_add(name="Basis")
+        key = obj.shape_key_add(name="Up")
+        for point in key.data:
+            point.co.z += 1
+        for frame, value in ((1, 0.0), (2, 1.0)):
+            key.value = value
+            key.keyframe_insert("value", frame=frame)
+        bpy.context.scene.frame_set(1)
+        before = self.read().points[0].positions
+        drawn._overlay.edited = False  # noqa: SLF001
+        bpy.context.scene.frame_set(2)
+        assert drawn._overlay.edited  # noqa: SLF001
+        assert not np.allclose(self.read().points[0].positions, before)
 
     def test_what_it_depends_on(self, pair):
         scene = bpy.context.scene
