@@ -41,6 +41,9 @@ __all__ = ["LandmarkClicks", "is_key"]
 _MOVES: Final = ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE")
 """Events of which there are many, and that change nothing."""
 
+_LOOKS: Final = 0.2
+"""Seconds from one look at what Undo has done to the next: soon enough for who reads what to click on next."""
+
 _REACH: Final = 12
 """How far beside a mesh a click still counts as one on it, in pixels."""
 
@@ -60,6 +63,8 @@ class LandmarkClicks(_Operator):
     _sides: tuple[SideReference, SideReference]
     _pending: _Click | None
     replaced = False  # whether another one waits for clicks now
+    had_overlay = False  # whether the overlay was shown before
+    _timer: bpy.types.Timer | None = None  # without it an Undo would be noticed with the next event only
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -82,12 +87,15 @@ class LandmarkClicks(_Operator):
             return {"CANCELLED"}
         pick_pair(context, source, target)
         self._wait_for(source, target)
-        for window in window_manager_of(context).windows:
-            for other in cast("Any", window).modal_operators:
-                if isinstance(other, LandmarkClicks):
-                    other.replaced = True
+        manager: Any = window_manager_of(context)
+        self.had_overlay = steering_of(context).show_overlay
+        for window in manager.windows:
+            for other in window.modal_operators:
+                if isinstance(other, LandmarkClicks) and not other.replaced:
+                    other.replaced, self.had_overlay = True, other.had_overlay
         steering_of(context).show_overlay = True
-        window_manager_of(context).modal_handler_add(self)
+        self._timer = manager.event_timer_add(_LOOKS, window=context.window)
+        manager.modal_handler_add(self)
         self._show_status(context)
         return {"RUNNING_MODAL"}
 
@@ -101,7 +109,9 @@ class LandmarkClicks(_Operator):
         """Wait on, unless another one waits instead, or other work of ours has begun."""
         working = is_running(window_manager_of(context))
         if self.replaced or working:
-            if not self.replaced:
+            if self.replaced:
+                self._stop_timer(context)
+            else:
                 self.cancel(context)
             return {"FINISHED", "PASS_THROUGH"}
         if event.type not in _MOVES and self._follow_undo():
@@ -137,11 +147,19 @@ class LandmarkClicks(_Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Leave the viewport as it was; Blender itself calls this when it loads a file or closes the window."""
         show_pending(None)
+        self._stop_timer(context)
+        if context.scene is not None:
+            steering_of(context).show_overlay = self.had_overlay
         for workspace in bpy.data.workspaces:
             workspace.status_text_set(None)
         for screen in bpy.data.screens:  # also of workspaces that were shown meanwhile
             _say_in_viewports(screen, None)
         redraw_views(window_manager_of(context))
+
+    def _stop_timer(self, context: bpy.types.Context) -> None:
+        if self._timer is not None:
+            window_manager_of(context).event_timer_remove(self._timer)
+            self._timer = None
 
     def _hit(self, context: bpy.types.Context, viewport: Viewport, mouse: tuple[int, int]) -> Hit | None:
         """Find what was clicked on, or just beside."""

@@ -104,9 +104,12 @@ def test_a_landmark_that_is_moved_by_a_click_for_third_meshes_is_told(clicks, pa
 
 
 def test_only_one_waits_for_clicks_at_a_time(clicks, pair, press, monkeypatch):
+    timers, steering = [], bpy.context.scene.hiermatch_steering
     manager = SimpleNamespace(
         windows=[SimpleNamespace(modal_operators=[clicks], screen=SimpleNamespace(areas=[]))],
         modal_handler_add=lambda _operator: None,
+        event_timer_add=lambda _seconds, window: object(),  # noqa: ARG005
+        event_timer_remove=timers.append,
     )
     clicks.bl_idname = "HIERMATCH_OT_pick_landmarks"
     monkeypatch.setattr(landmark_clicks, "window_manager_of", lambda _context: manager)
@@ -115,6 +118,19 @@ def test_only_one_waits_for_clicks_at_a_time(clicks, pair, press, monkeypatch):
     assert clicks.event("MOUSEMOVE") == {"FINISHED", "PASS_THROUGH"}
     assert newer.event("MOUSEMOVE") == {"PASS_THROUGH"}
     assert pair
+    assert steering.show_overlay
+    assert not timers
+    assert newer.event("ESC") == {"FINISHED"}
+    assert len(timers) == 1
+    assert not steering.show_overlay  # as before the first of them
+
+
+def test_an_overlay_that_was_shown_stays(clicks):
+    steering = bpy.context.scene.hiermatch_steering
+    for shown in (True, False):
+        steering.show_overlay, clicks.had_overlay = True, shown
+        assert clicks.event("ESC") == {"FINISHED"}
+        assert steering.show_overlay == shown
 
 
 def test_nothing_waits_for_clicks_while_a_match_runs(clicks, monkeypatch):
