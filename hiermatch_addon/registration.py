@@ -9,7 +9,7 @@ import bpy
 
 from ..engine import close_helpers
 from .command_line import register_command, unregister_command
-from .common.translations import register_translations, unregister_translations
+from .common.translations import register_translations, unregister_translations, use_context
 from .operators.answer import HIERMATCH_OT_answer
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.carrying.fit_my_rig import HIERMATCH_OT_fit_my_rig
@@ -184,6 +184,7 @@ def register() -> None:
     """Register all classes and attach the property groups to their owners."""
     register_translations()
     for cls in CLASSES:
+        use_context(cls)
         bpy.utils.register_class(cls)
     properties: Any = bpy.props
     for owner, name, group in _ATTACHMENTS:

@@ -15,7 +15,7 @@ from typing import Any
 
 import bpy
 
-from .translations import LANGUAGES
+from .translations import CONTEXT, LANGUAGES
 
 __all__ = ["translated"]
 
@@ -35,18 +35,25 @@ def translated(text: str) -> str:
         unless it stands in quotation marks: that is a name.  So are the parts of a list, if all of them are known.
     """
     translations: Any = bpy.app.translations  # whose functions Blender's stubs declare to return nothing
-    said: str = translations.pgettext_iface(text)
+    said = _looked_up(text)
     if said != text or translations.locale not in LANGUAGES:
         return said
     parts = text.split(", ")
     if len(parts) > 1 and all(_is_known(part) for part in parts):
         return "、".join(translated(part) for part in parts)
     template, values = _taken_apart(text)
-    said = translations.pgettext_iface(template)
+    said = _looked_up(template)
     if said == template:
         return text
     filled = {name: value if f'"{{{name}}}"' in template else translated(value) for name, value in values}
     return re.sub(r"\{(\w+)\}", lambda field: filled[field[1]], said)
+
+
+def _looked_up(text: str) -> str:
+    """Return what a whole text is in the language of the interface, in our sense of it, else as Blender calls it."""
+    translations: Any = bpy.app.translations
+    said: str = translations.pgettext_iface(text, CONTEXT)
+    return said if said != text else str(translations.pgettext_iface(text))
 
 
 def _is_known(text: str) -> bool:

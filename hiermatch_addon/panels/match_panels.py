@@ -16,7 +16,7 @@ from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
 from .answer_menu import draw_answers
-from .panel_text import draw_notes, draw_text, wrap_text
+from .panel_text import draw_label, draw_notes, draw_text, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress
 
@@ -90,7 +90,7 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
     names, pickers, swap = row.column(), row.column(), row.column()
     names.ui_units_x = _name_width()
     for name in ("source", "target"):
-        names.label(text=name.title())
+        draw_label(names, name.title())
         _draw_picker(pickers.row(align=True), state, name)
     swap.scale_y = 2.0
     swap.operator("hiermatch.swap", text="", icon="UV_SYNC_SELECT")
@@ -121,7 +121,7 @@ def _name_width() -> float:
 def _draw_options(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw the options that are changed now and then."""
     header, body = cast("Any", layout).panel("hiermatch_options", default_closed=True)
-    header.label(text="Options")
+    draw_label(header, "Options")
     if body is not None:
         for name in (*APART, "use_modifiers", "use_landmarks"):
             body.prop(state, name)
@@ -130,7 +130,7 @@ def _draw_options(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None
 def _draw_regions(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw what is left out."""
     header, body = cast("Any", layout).panel("hiermatch_regions", default_closed=True)
-    header.label(text="Leave Out")
+    draw_label(header, "Leave Out")
     if body is not None:
         body.prop(state, "exclude_source", text="Of Source")
         body.prop(state, "exclude_target", text="Of Target")
@@ -139,7 +139,7 @@ def _draw_regions(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None
 def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw what is written."""
     header, body = cast("Any", layout).panel("hiermatch_output", default_closed=True)
-    header.label(text="Output")
+    draw_label(header, "Output")
     if body is not None:
         body.prop(state, "prefix")
         column = body.column(heading="Write")
@@ -155,18 +155,18 @@ def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
 def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw the settings that usually stay as they are, as far as they matter, with a sentence for each group."""
     header, body = cast("Any", layout).panel("hiermatch_advanced", default_closed=True)
-    header.label(text="Advanced")
+    draw_label(header, "Advanced")
     if body is None:
         return
     row = body.row(align=True)
     name = row.column()
     name.ui_units_x = _name_width()
-    name.label(text="Setup")
+    draw_label(name, "Setup")
     row.operator_menu_enum("hiermatch.use_setup", "setup", text=current_setup(state) or "Custom")
     for title, names in shown_groups(state):
         column = body.column()
         if title:
-            column.label(text=title)
+            draw_label(column, title)
             _draw_faint(column, _SENTENCES[title])
         for name in names:
             # Beside a number, a usual sidebar has no room for names as long as these; inside its field it has.
@@ -185,7 +185,7 @@ def _draw_faint(layout: bpy.types.UILayout, sentence: str) -> None:
 def _draw_more(layout: bpy.types.UILayout) -> None:
     """Draw what is done before and after the work: the demo pair, files, and taking away what was written."""
     header, body = cast("Any", layout).panel("hiermatch_more", default_closed=True)
-    header.label(text="Demo and Files")
+    draw_label(header, "Demo and Files")
     if body is not None:
         column = body.column()
         column.operator("hiermatch.clear", icon="TRASH")
@@ -223,7 +223,9 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
     if summary.verdict:
         draw_text(box, context, summary.verdict, "ERROR" if doubtful else "CHECKMARK")
     else:
-        box.label(text=translated("{count} points matched").format(count=summary.points), icon="CHECKMARK")
+        box.label(
+            text=translated("{count} points matched").format(count=summary.points), icon="CHECKMARK", translate=False
+        )
     _draw_rows(
         box,
         ("Confidence", _judged(summary.confidence, _CONFIDENCE) if summary.verdict else ""),
@@ -234,7 +236,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
         box.operator("hiermatch.guide_me", icon="EYEDROPPER")
     draw_answers(box, context, summary)
     header, body = cast("Any", layout).panel("hiermatch_details", default_closed=True)
-    header.label(text="Details")
+    draw_label(header, "Details")
     if body is not None:
         _draw_rows(
             body,
@@ -253,7 +255,7 @@ def _draw_rows(layout: bpy.types.UILayout, *rows: tuple[str, str]) -> None:
     for name, text in rows:
         if text:
             split = layout.split(factor=_LABEL_SHARE)
-            split.label(text=name)
+            draw_label(split, name)
             split.label(text=text, translate=False)  # a name such as "Source" stays as it is
 
 

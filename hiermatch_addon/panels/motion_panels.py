@@ -48,7 +48,7 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
             row.prop(item, name, text="", emboss=False)
         score = row.row()
         score.ui_units_x = _SCORE_WIDTH  # else it takes as much room as a name
-        score.label(text=f"{item.score:.2f}")
+        score.label(text=f"{item.score:.2f}", translate=False)
         row.prop(item, "locked", text="", icon="LOCKED" if item.locked else "UNLOCKED")
         button = row.operator("hiermatch.remove_bone_pair", text="", icon="X")
         button.source_bone, button.target_bone = item.source, item.target

@@ -13,7 +13,7 @@ from ..common.translated_text import translated
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["draw_notes", "draw_text", "letters_across", "wrap_text"]
+__all__ = ["draw_label", "draw_notes", "draw_text", "letters_across", "wrap_text"]
 
 _PIXELS_PER_LETTER = 7
 """Rough width of a letter at normal interface scale, to wrap sentences."""
@@ -23,6 +23,11 @@ _BESIDE = 7
 
 _NEVER_FIRST: Final = "、。，．：；！？）」』”’・ー々ぁぃぅぇぉっゃゅょァィゥェォッャュョ"
 """What no line of Japanese or Chinese starts with."""
+
+
+def draw_label(layout: bpy.types.UILayout, text: str, icon: str = "NONE") -> None:
+    """Draw a name, in the language of the interface and in our sense of it: Blender's catalog has others first."""
+    cast("Any", layout).label(text=translated(text), icon=icon, translate=False)
 
 
 def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:

@@ -9,7 +9,7 @@ from ..common.access import window_manager_of
 from ..common.translated_text import translated
 from ..jobs.running import is_running, running_panel
 from ..properties.panel_state import progress_of
-from .panel_text import draw_text, letters_across
+from .panel_text import draw_label, draw_text, letters_across
 from .question import draw_question
 
 if TYPE_CHECKING:
@@ -77,6 +77,6 @@ def draw_starter(
     if is_running(window_manager_of(context)):
         waiting = place.row()
         waiting.enabled = False  # a label that is not is drawn as bright as a button
-        waiting.label(text=text, icon=icon)
+        draw_label(waiting, text, icon)
         return None
     return place.operator(operator, text=text, icon=icon, **how)

@@ -17,7 +17,7 @@ from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
 from ..transfers.retarget_properties import copy_named, retarget_of, shown_report, shown_target
-from .panel_text import draw_notes, draw_text
+from .panel_text import draw_label, draw_notes, draw_text
 from .progress_bar import draw_progress, draw_starter
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def _draw_kind(
 def _draw_my_rig(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
     """Draw the options of fitting another armature and its button."""
     header, body = cast("Any", layout).panel("hiermatch_my_rig", default_closed=True)
-    header.label(text="My Rig")
+    draw_label(header, "My Rig")
     if body is not None:
         names = option_names(MyRigOptions)
         for name in names:
@@ -122,7 +122,7 @@ def _draw_my_rig(layout: bpy.types.UILayout, context: bpy.types.Context, state: 
 def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
     """Draw the options of a wrap and its button."""
     header, body = cast("Any", layout).panel("hiermatch_wrap", default_closed=True)
-    header.label(text="Wrap and Morph")
+    draw_label(header, "Wrap and Morph")
     if body is not None:
         names = option_names(WrapOptions)
         for name in names:
@@ -145,7 +145,7 @@ def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, panel: s
         draw_text(box, context, line, "ERROR" if report.doubtful else "CHECKMARK")
     for line in report.verdict.splitlines():
         draw_text(box, context, line, "ERROR" if report.doubtful else "INFO")
-    box.label(text=f"{report.seconds:.1f} s", icon="TIME")
+    box.label(text=f"{report.seconds:.1f} s", icon="TIME", translate=False)
     target: Any = shown_target(context, report)
     if target is not None and getattr(target, "type", "") == "ARMATURE":
         armature: bpy.types.Object | None = successor(target)

@@ -15,6 +15,7 @@ from ..properties.steering_lists import steered_pair
 from ..properties.steering_properties import steering_of
 from ..scene.character import parts_of
 from ..storage.views.views import VIEW_ITEMS, attribute_of
+from .panel_text import draw_label
 from .progress_bar import draw_progress
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ class HIERMATCH_UL_landmarks(bpy.types.UIList):
         switch.number, switch.use = item.number, not item.use
         number = row.row()
         number.ui_units_x = 1.2
-        number.label(text=str(item.number))  # as it stands in the viewport
+        number.label(text=str(item.number), translate=False)  # as it stands in the viewport
         name = row.row()
         name.active = item.use
         name.prop(item, "label", text="", emboss=False)
@@ -76,8 +77,8 @@ class HIERMATCH_UL_pairs(bpy.types.UIList):
     ) -> None:
         """Draw a matched point: name, distortion, and the buttons for it."""
         row: Any = layout.row(align=True)
-        row.label(text=item.name)
-        row.label(text=f"{item.distortion:.3f}")
+        row.label(text=item.name, translate=False)
+        row.label(text=f"{item.distortion:.3f}", translate=False)
         icon = "LOCKED" if item.locked else "UNLOCKED"
         row.operator("hiermatch.lock_pair", text="", icon=icon, depress=item.locked).number = item.number
         row.operator("hiermatch.select_pair", text="", icon="RESTRICT_SELECT_OFF").number = item.number
@@ -105,7 +106,7 @@ class HIERMATCH_PT_landmarks(bpy.types.Panel):
         row.operator("hiermatch.pick_landmarks", icon="EYEDROPPER")
         row.operator("hiermatch.add_landmark", text="", icon="ADD")
         if steered_pair(cast("bpy.types.Scene", context.scene)) is None:
-            layout.label(text="Pick Source and Target first", icon="INFO")
+            draw_label(layout, "Pick Source and Target first", "INFO")
             return
         layout.template_list(
             "HIERMATCH_UL_landmarks", "", steering, "landmarks", steering, "landmark_index", rows=3, maxrows=8
@@ -163,7 +164,7 @@ class HIERMATCH_PT_pairs(bpy.types.Panel):
         layout: Any = layout_of(self)
         steering = steering_of(context)
         if not len(steering.pairs):
-            layout.label(text="There is no match yet", icon="INFO")
+            draw_label(layout, "There is no match yet", "INFO")
             return
         layout.template_list("HIERMATCH_UL_pairs", "", steering, "pairs", steering, "pair_index", rows=4, maxrows=12)
         _draw_refine(layout, context)

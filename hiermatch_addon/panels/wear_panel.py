@@ -16,7 +16,7 @@ from ..scene.worn.fitted_copies import fitted_to, original_of
 from ..scene.worn.garments import bound_items, selected_items
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
-from .panel_text import draw_text
+from .panel_text import draw_label, draw_text
 from .progress_bar import draw_progress
 from .retarget_panels import draw_report
 
@@ -96,7 +96,7 @@ def _draw_items(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if not names:
         draw_text(column, context, "Select the clothes of the source, or bind them to its armature.", "INFO")
         return
-    column.label(text="Items")
+    draw_label(column, "Items")
     for name in names[:_SHOWN]:
         column.label(text=name, icon="MATCLOTH", translate=False)
     if len(names) > _SHOWN:

@@ -12,7 +12,6 @@ import bpy
 from ...engine import MatchSettings
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..common.translations import CONTEXT
 from ..scene.character import parts_of, side_of
 from ..scene.pair import named_side
 from ..storage.excluded_regions import region_names
@@ -55,7 +54,6 @@ def _setting_property(setting: Any) -> Any:  # noqa: ANN401 - a dataclass field 
             description=about["description"],
             default=to_identifier(setting.default),
             items=[(to_identifier(word), *described) for word, described in about["choices"].items()],
-            translation_context=CONTEXT,
         )
     if isinstance(setting.default, bool):
         return _props.BoolProperty(name=about["label"], description=about["description"], default=setting.default)

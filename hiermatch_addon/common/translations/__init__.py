@@ -7,25 +7,39 @@ put together, `panel_text.translated` is asked for its parts.  A text that is mi
 
 from __future__ import annotations
 
-from typing import Final
+import inspect
+from typing import Any, Final, cast, get_type_hints
 
 import bpy
 
 from . import ja_JP, zh_HANS
 
-__all__ = ["CONTEXT", "LANGUAGES", "register_translations", "unregister_translations"]
+__all__ = ["CONTEXT", "LANGUAGES", "register_translations", "unregister_translations", "use_context"]
 
 LANGUAGES: Final = {"ja_JP": ja_JP.MESSAGES, "zh_HANS": zh_HANS.MESSAGES}
 """For each of Blender's names of a language the translation of each English text."""
 
 CONTEXT: Final = "HierMatch"
-"""Context of names that mean something else in Blender: its own "Metric" is the metric system."""
+"""Context of all our names: in others Blender's own catalog comes first, where "Keys" are volume keys."""
 
 _CONTEXTS: Final = ("*", "Operator", CONTEXT)
 """Blender looks for the names of operators, and for the texts of their buttons, in a context of their own."""
 
 _EXTENSION: Final = __name__.partition(".hiermatch_addon.")[0]
 """The package of the extension, by which Blender knows whose translations these are."""
+
+
+def use_context(cls: type[Any]) -> None:
+    """Let a class that is to be registered have its name, and those of its properties, translated in our context."""
+    if issubclass(cls, (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu)):
+        cast("Any", cls).bl_translation_context = CONTEXT
+    ours = [base for base in cls.__mro__ if base.__module__.startswith(f"{_EXTENSION}.")]
+    names = {name for base in ours for name in inspect.get_annotations(base)}
+    hints = get_type_hints(cls)  # those with keywords are what Blender makes properties of
+    properties = {name: hint for name, hint in hints.items() if name in names and hasattr(hint, "keywords")}
+    for definition in properties.values():
+        definition.keywords["translation_context"] = CONTEXT
+    cls.__annotations__ = {**inspect.get_annotations(cls), **properties}
 
 
 def register_translations() -> None:

@@ -216,7 +216,7 @@ MESSAGES: Final[dict[str, str]] = {
     "After how many nodes the exact search stops with the best matching so far and a bound on the optimum": (
         "厳密な探索がこの数のノードの後に停止し、それまでの最良のマッチングと最適値の限界を返します"
     ),
-    "Use Modifiers": "モディファイアー",
+    "Use Modifiers": "モディファイアー込み",
     (
         "Match the meshes as their shape keys and modifiers show them. Possible unless a modifier adds or removes "
         "vertices"
@@ -2773,7 +2773,7 @@ MESSAGES: Final[dict[str, str]] = {
         "ソースの中に立ち、ソースを動かしていないアーマチュアの名前。Rigifyのメタリグなど。何にもバインド"
         "されていなくて構いません"
     ),
-    "Bind with Weights": "ウェイト付きでバインド",
+    "Bind with Weights": "ウェイトでバインド",
     (
         "Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
         "bones that move the same surface. Leave it off for a metarig"

@@ -618,7 +618,7 @@ MESSAGES: Final[dict[str, str]] = {
     'What it wears is still moved by "{0}": {1}. Fit it again by Wear.': (
         '它所穿的仍由 "{0}" 带动：{1}。请用“穿戴”重新适配。'
     ),
-    "Bind": "绑定",
+    "Bind": "绑定网格",
     "Same Rest Pose": "同一静置姿态",
     (
         "Whether to bring the target to the rest pose of the source, so that the source's actions play on "

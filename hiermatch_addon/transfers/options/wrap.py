@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ...common.translations import CONTEXT
-
 __all__ = ["WrapOptions", "WrapSettings", "wrap_settings"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -49,7 +47,6 @@ class WrapOptions:
                 ("TARGET", "Target to Source", "Lay the target onto the source"),
             ],
             default="SOURCE",
-            translation_context=CONTEXT,
         ),
         "wrap_result": _props.EnumProperty(
             name="Result",
@@ -76,7 +73,6 @@ class WrapOptions:
             default=0,
             min=0,
             max=15,
-            translation_context=CONTEXT,
         ),
     }
 

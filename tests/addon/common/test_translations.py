@@ -17,7 +17,7 @@ from hiermatch.engine.repair.cleaning_notes import CleaningCounts, cleaning_note
 from hiermatch.hiermatch_addon.common import translated_text, translations
 from hiermatch.hiermatch_addon.common.phrases import counted
 from hiermatch.hiermatch_addon.common.translated_text import translated
-from hiermatch.hiermatch_addon.common.translations import LANGUAGES
+from hiermatch.hiermatch_addon.common.translations import CONTEXT, LANGUAGES
 from hiermatch.hiermatch_addon.panels.panel_text import wrap_text
 from hiermatch.hiermatch_addon.registration import CLASSES
 from hiermatch.hiermatch_addon.transfers.options.attributes import AttributeOptions
@@ -230,6 +230,26 @@ def columns(text):
     return sum(1 if letter.isascii() else 2 for letter in text)
 
 
+def test_all_names_are_translated_in_our_context():
+    """Where Blender's own catalog has a word, it would come first in every other one."""
+    for cls in CLASSES:
+        rna = rna_of(cls)
+        if issubclass(cls, (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu)):
+            assert rna.translation_context == CONTEXT, cls
+        ours = [base for base in cls.__mro__ if not base.__module__.startswith(("bpy", "bl_"))]
+        names = {name for base in ours for name in inspect.get_annotations(base)}
+        for name in names & set(rna.properties.keys()):
+            assert rna.properties[name].translation_context == CONTEXT, (cls, name)
+    labels = [
+        (path.name, ast.unparse(node))
+        for path in INTERFACE
+        for node in ast.walk(ast.parse(path.read_text("utf8")))
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr == "label"
+    ]
+    assert len(labels) > 10
+    assert not [found for found in labels if "translate=False" not in found[1]]
+
+
 def test_what_is_filled_in_is_kept(messages):
     for text, said in messages.items():
         fields = [{name for _, name, _, _ in Formatter().parse(each) if name} for each in (text, said)]
@@ -285,7 +305,7 @@ class TestSentencesWithGaps:
     @pytest.fixture(autouse=True)
     def japanese(self, monkeypatch):
         messages = LANGUAGES["ja_JP"]
-        blender = SimpleNamespace(locale="ja_JP", pgettext_iface=lambda text: messages.get(text, text))
+        blender = SimpleNamespace(locale="ja_JP", pgettext_iface=lambda text, _context="": messages.get(text, text))
         monkeypatch.setattr(translated_text, "bpy", SimpleNamespace(app=SimpleNamespace(translations=blender)))
 
     def test_what_is_filled_in_is_kept(self):
