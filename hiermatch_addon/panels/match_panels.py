@@ -16,7 +16,7 @@ from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
 from .answer_menu import draw_answers
-from .panel_text import draw_label, draw_notes, draw_text, wrap_text
+from .panel_text import draw_label, draw_notes, draw_text, letters_across, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress
 
@@ -33,6 +33,9 @@ _WIDE_LETTER = 0.8
 
 _LABEL_SHARE = 0.4
 """Part of the width for the names in the summary, as in a property split."""
+
+_LETTERS_OF_ICON = 2
+"""For how many letters there is room where no icon stands before a text."""
 
 _CLEAR_ORIENTATION = 0.3
 """From which agreement on a match is called to keep or to mirror the orientation."""
@@ -219,7 +222,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
     names = (("Source", summary.source), ("Target", summary.target))
     of_picked = all(picked(state))
     if not of_picked:
-        _draw_rows(box, *names)
+        _draw_rows(box, context, *names)
     if summary.verdict:
         draw_text(box, context, summary.verdict, "ERROR" if doubtful else "CHECKMARK")
     else:
@@ -228,6 +231,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
         )
     _draw_rows(
         box,
+        context,
         ("Confidence", _judged(summary.confidence, _CONFIDENCE) if summary.verdict else ""),
         ("Left and Right", _orientation_text(summary)),
         ("Other Answers", "" if "\n" in summary.answers else translated("none")),
@@ -240,6 +244,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
     if body is not None:
         _draw_rows(
             body,
+            context,
             *(names if of_picked else ()),
             ("Matched Points", str(summary.points)),
             ("Distortion", _judged(summary.stretch, _STRETCH) if summary.verdict else f"{summary.distortion:.4g}"),
@@ -250,13 +255,18 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
     draw_notes(layout, context, "hiermatch_notes", summary.notes.splitlines())
 
 
-def _draw_rows(layout: bpy.types.UILayout, *rows: tuple[str, str]) -> None:
+def _draw_rows(layout: bpy.types.UILayout, context: bpy.types.Context, *rows: tuple[str, str]) -> None:
     """Draw names and values beside each other; those without a value are left out."""
+    width = int((1.0 - _LABEL_SHARE) * (letters_across(context) + _LETTERS_OF_ICON))
     for name, text in rows:
         if text:
             split = layout.split(factor=_LABEL_SHARE)
             draw_label(split, name)
-            split.label(text=text, translate=False)  # a name such as "Source" stays as it is
+            column: Any = split.column()
+            lines = wrap_text(text, width)
+            column.scale_y = 1.0 if len(lines) == 1 else 0.8
+            for line in lines:
+                column.label(text=line, translate=False)  # a name such as "Source" stays as it is
 
 
 def _judged(number: float, scale: tuple[tuple[float, str], ...]) -> str:

@@ -14,6 +14,7 @@ from ..scene.character import armatures_above
 from ..transfers.options.motion import MotionOptions
 from ..transfers.options.retarget import option_names
 from ..transfers.retarget_properties import copy_named, retarget_of
+from .panel_text import letters_across, shortened
 from .progress_bar import draw_progress, draw_starter
 from .retarget_panels import draw_report
 
@@ -26,6 +27,9 @@ __all__ = ["HIERMATCH_PT_motion", "HIERMATCH_UL_bone_pairs"]
 _SCORE_WIDTH = 1.7
 """Of the column of scores, in Blender's units of the interface."""
 
+_LETTERS_OF_BUTTONS = 7
+"""For how many letters of a name score, lock, cross and the scroll bar leave no room in either half of a row."""
+
 
 class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
     """The list of pairs of bones."""
@@ -34,7 +38,7 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
 
     def draw_item(  # type: ignore[override]
         self,
-        _context: bpy.types.Context,
+        context: bpy.types.Context,
         layout: bpy.types.UILayout,
         _data: Any,  # noqa: ANN401 - Blender's own
         item: HIERMATCH_PG_bone_pair,
@@ -44,8 +48,13 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
     ) -> None:
         """Draw a pair: the names of both bones, the score, and the lock."""
         row: Any = layout.row(align=True)
+        letters = max(4, letters_across(context) // 2 - _LETTERS_OF_BUTTONS)
         for name in ("source", "target"):
-            row.prop(item, name, text="", emboss=False)
+            bone = getattr(item, name)
+            if len(bone) <= letters:
+                row.prop(item, name, text="", emboss=False)
+            else:  # Blender would leave its end out; below the list it can be chosen anew
+                row.label(text=shortened(bone, letters), translate=False)
         score = row.row()
         score.ui_units_x = _SCORE_WIDTH  # else it takes as much room as a name
         score.label(text=f"{item.score:.2f}", translate=False)

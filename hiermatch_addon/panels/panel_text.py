@@ -13,13 +13,16 @@ from ..common.translated_text import translated
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["draw_label", "draw_notes", "draw_text", "letters_across", "wrap_text"]
+__all__ = ["draw_label", "draw_notes", "draw_text", "letters_across", "shortened", "wrap_text"]
 
-_PIXELS_PER_LETTER = 7
-"""Rough width of a letter at normal interface scale, to wrap sentences."""
+_PIXELS_PER_LETTER = 6.5
+"""Width of a letter in a sentence at normal interface scale: a line of twenty fits, whichever they are."""
 
-_BESIDE = 7
-"""How many letters margins and the icon take, and letters that are wider: with 6 a line of 34 was cut off."""
+_PIXELS_BESIDE = 72
+"""What is beside a sentence at that scale: the strip of tabs, the margins of the panel and of a box, and the icon."""
+
+_LEAST_LETTERS = 8
+"""In a line, of however narrow a sidebar: half of what the narrowest holds that can be dragged."""
 
 _NEVER_FIRST: Final = "、。，．：；！？）」』”’・ー々ぁぃぅぇぉっゃゅょァィゥェォッャュョ"
 """What no line of Japanese or Chinese starts with."""
@@ -53,8 +56,29 @@ def draw_notes(layout: bpy.types.UILayout, context: bpy.types.Context, name: str
 def letters_across(context: bpy.types.Context) -> int:
     """Return how many letters of a sentence stand in a line of the sidebar."""
     region, preferences = cast("Any", context.region), cast("Any", context.preferences)
-    width = region.width / (_PIXELS_PER_LETTER * preferences.system.ui_scale)
-    return max(16, int(width) - _BESIDE)
+    width = region.width / preferences.system.ui_scale - _PIXELS_BESIDE
+    return max(_LEAST_LETTERS, int(width / _PIXELS_PER_LETTER))
+
+
+def shortened(text: str, letters: int) -> str:
+    """Shorten a name that is too long in its middle: the end is what tells left from right.
+
+    Parameters
+    ----------
+    text : str
+        The name.
+    letters : int
+        How many letters there is room for.
+
+    Returns
+    -------
+    str
+        The name, or its beginning and its end.
+    """
+    if len(text) <= letters:
+        return text
+    start = (letters - 1) // 2
+    return f"{text[:start]}…{text[len(text) - (letters - 1 - start) :]}"
 
 
 def wrap_text(text: str, width: int) -> list[str]:

@@ -101,8 +101,8 @@ class HIERMATCH_PT_landmarks(bpy.types.Panel):
         layout: Any = layout_of(self)
         steering = steering_of(context)
         layout.active = state_of(context).use_landmarks
+        layout.operator("hiermatch.guide_me", icon="LIGHT_SUN")
         row = layout.row(align=True)
-        row.operator("hiermatch.guide_me", icon="LIGHT_SUN")
         row.operator("hiermatch.pick_landmarks", icon="EYEDROPPER")
         row.operator("hiermatch.add_landmark", text="", icon="ADD")
         if steered_pair(cast("bpy.types.Scene", context.scene)) is None:
