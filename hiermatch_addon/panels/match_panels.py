@@ -15,6 +15,7 @@ from ..properties.panel_state import picked, state_of
 from ..properties.properties import copy_options
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.setups import current_setup
+from ..scene.character import is_of
 from .answer_menu import draw_answers
 from .panel_text import draw_label, draw_notes, draw_text, letters_across, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
@@ -97,13 +98,17 @@ def _draw_pair(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
         _draw_picker(pickers.row(align=True), state, name)
     swap.scale_y = 2.0
     swap.operator("hiermatch.swap", text="", icon="UV_SYNC_SELECT")
-    chosen = sum(one is not None for one in picked(state))
-    if chosen < 2:
-        selected = sum(obj.type in ("MESH", "ARMATURE", "EMPTY") for obj in view_layer_of(context).objects.selected)
-        if selected + chosen < 2:
-            draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
-            if not state.summary.points:
-                layout.operator("hiermatch.add_demo_pair", icon="ADD")
+    chosen = [one for one in picked(state) if one is not None]
+    if len(chosen) < 2 and len(chosen) + _selected_beside(context, chosen) < 2:
+        draw_text(layout, context, "Pick two meshes, or select them: the active one is the source", "INFO")
+        if not state.summary.points:
+            layout.operator("hiermatch.add_demo_pair", icon="ADD")
+
+
+def _selected_beside(context: bpy.types.Context, chosen: list[bpy.types.ID]) -> int:
+    """Count what is selected and may be matched, but for what is picked already with all of the same character."""
+    selected = [obj for obj in view_layer_of(context).objects.selected if obj.type in ("MESH", "ARMATURE", "EMPTY")]
+    return sum(not any(is_of(obj, one) for one in chosen) for obj in selected)
 
 
 def _draw_picker(row: bpy.types.UILayout, state: HIERMATCH_PG_scene, role: str) -> None:

@@ -36,6 +36,7 @@ __all__ = [
     "corner_ranges",
     "edge_ranges",
     "face_ranges",
+    "is_of",
     "joined",
     "joined_mesh",
     "own_positions",
@@ -148,6 +149,15 @@ def take_place(other: bpy.types.Object, armature: bpy.types.Object) -> None:
 def successor(armature: bpy.types.Object) -> bpy.types.Object:
     """Return the armature that has taken the place of another one, or that one itself."""
     return cast("Any", armature).get(_SUCCESSOR) or armature
+
+
+def is_of(obj: bpy.types.Object, chosen: bpy.types.ID) -> bool:
+    """Tell whether an object is what is picked, or one of the same character."""
+    if isinstance(chosen, bpy.types.Collection):
+        return obj.name in chosen.all_objects
+    own: Any = chosen
+    rigs = armatures_above(own) | ({successor(own)} if own.type == "ARMATURE" else set())
+    return obj == own or obj in own.children_recursive or not rigs.isdisjoint(armatures_above(obj))
 
 
 def character_of(side: Side) -> Character:

@@ -12,7 +12,7 @@ import bpy
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..properties.panel_state import picked, state_of
-from ..scene.character import armatures_above, parts_of, successor
+from ..scene.character import is_of, parts_of
 from ..scene.pair import named_side
 from .options.motion import MotionOptions
 from .options.my_rig import MyRigOptions
@@ -122,7 +122,7 @@ def shown_report(context: bpy.types.Context, panel: str) -> HIERMATCH_PG_report 
         return None
     for role, chosen in zip(("source", "target"), picked(state_of(context)), strict=True):
         obj = _first_object(context, report, role)
-        if chosen is not None and (obj is None or not _is_of(obj, chosen)):
+        if chosen is not None and (obj is None or not is_of(obj, chosen)):
             return None
     return cast("HIERMATCH_PG_report", report)
 
@@ -151,15 +151,6 @@ def _first_object(context: bpy.types.Context, report: HIERMATCH_PG_report, role:
         return next((obj for obj in objects if obj is not None and obj.session_uid == uid), None)
     side = _named(context, getattr(report, role))
     return None if side is None else parts_of(side)[0]
-
-
-def _is_of(obj: bpy.types.Object, chosen: bpy.types.ID) -> bool:
-    """Tell whether an object is what is picked, or one of the same character."""
-    if isinstance(chosen, bpy.types.Collection):
-        return obj.name in chosen.all_objects
-    own: Any = chosen
-    rigs = armatures_above(own) | ({successor(own)} if own.type == "ARMATURE" else set())
-    return obj == own or obj in own.children_recursive or not rigs.isdisjoint(armatures_above(obj))
 
 
 def copy_named(source: object, target: object, names: Iterable[str]) -> None:

@@ -206,7 +206,21 @@ def test_it_says_what_to_do_until_there_are_two_meshes(context):
         empty.select_set(state=True)
     assert "Pick two meshes" not in texts(draw(context))
     bpy.ops.object.select_all(action="DESELECT")
-    context.scene.hiermatch.source, context.scene.hiermatch.target = pair
+    state = context.scene.hiermatch
+    state.source = pair[0]
+    for chosen, lacking in ((pair[:1], True), (pair[1:], False), (pair, False)):
+        bpy.ops.object.select_all(action="DESELECT")
+        for obj in chosen:
+            obj.select_set(state=True)
+        assert ("Pick two meshes" in texts(draw(context))) == lacking
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(rig)
+    pair[0].parent = state.source = rig
+    bpy.ops.object.select_all(action="DESELECT")
+    pair[0].select_set(state=True)
+    assert "Pick two meshes" in texts(draw(context))  # it is a part of what is picked
+    bpy.ops.object.select_all(action="DESELECT")
+    state.source, state.target = pair
     assert "Pick two meshes" not in texts(draw(context))
 
 
