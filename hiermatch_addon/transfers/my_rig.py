@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+import json
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -23,7 +24,7 @@ from ...engine import (
 )
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..common.phrases import counted
+from ..common.phrases import counted, listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
@@ -51,6 +52,17 @@ _STANDS = 0.5
 """Part of an armature's deforming bones that lies inside of a body from which on it stands there.  A human metarig that
 was put to the joints of six of MakeHuman's people has 0.73 and more, one that was only moved there, in another pose,
 0.34 at most (`standing_share`)."""
+
+
+_MADE: Final = "hiermatch_my_rig"
+"""Custom property of a fitted armature: the names of the one that it was copied from, and of the body, as JSON."""
+
+
+def _made_before(context: bpy.types.Context, model: bpy.types.Object, target: Side) -> bpy.types.Object | None:
+    """Find the armature of the file's own that was made of another one for a target before, if it is still there."""
+    made, objects = json.dumps([model.name, target.name]), cast("Any", view_layer_of(context)).objects
+    found = (obj for obj in objects if obj is not None and obj.type == "ARMATURE" and obj.get(_MADE) == made)
+    return next((obj for obj in found if obj.library is None and obj.data.library is None), None)
 
 
 def check_has_body(source: Side) -> None:
@@ -101,8 +113,8 @@ class MyRigTransfer(Transfer):
         check_armature(armature, written=False)
         if armature in moving_armatures(source):
             raise ObjectError(
-                f'"{armature.name}" moves "{source.name}". To give a target the rig that moves the source, use Fit Rig '
-                "or Retarget."
+                f'"{armature.name}" moves "{source.name}". To give a target the rig that moves the source, use '
+                "Retarget with Rig on."
             )
         bones = armature_of(armature).bones
         self._names = tuple(bone.name for bone in bones)
@@ -151,23 +163,28 @@ class MyRigTransfer(Transfer):
             raise ObjectError(f'The bones of "{model.name}" were changed meanwhile. Nothing was written.')
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
-        """Copy the armature, move its bones, and bind the target if that is wanted."""
+        """Copy the armature, or take the copy of before, move its bones, and bind the target if that is wanted."""
         model, first = self._armature(), parts_of(target)[0]
-        armature = copy_to(context, model, f"{model.name} {target.name}", first)
-        move_joints(context, armature, self._names, cast("PlacedJoints", self._placed))
+        before = _made_before(context, model, target)
+        armature = before or copy_to(context, model, f"{model.name} {target.name}", first)
+        cast("Any", armature)[_MADE] = json.dumps([model.name, target.name])
+        missing = move_joints(context, armature, self._names, cast("PlacedJoints", self._placed))
         own = find_armature(source), find_armature(target)
         places = {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, *own).items()}
         notes = repoint(armature, {**places, model: armature, armature_of(model): armature_of(armature)})
         adapt_constraints(model, armature)
-        done = [f'the rig "{armature.name}" with {counted(len(self._names), "bone")}']
+        if missing:
+            notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
+        done = [f'the rig "{armature.name}" with {counted(len(self._names), "bone")}', *(["updated"] if before else [])]
         if self._weights is not None:
             done.append(self._write_weights(target))
-            hang_in_place(armature, target, ())
+            if armature.parent is None:
+                hang_in_place(armature, target, ())
             notes += bind(target, armature, source, ())
             replaced = unbind(target, armature, ())
             notes += lost_poses(target, replaced)
             self._remarks += replaced_remarks(target, replaced)
-        else:
+        elif armature not in moving_armatures(target):
             self._remarks.append(
                 f'"{armature.name}" moves nothing yet. Generate its control rig, or bind "{target.name}" to it.'
             )

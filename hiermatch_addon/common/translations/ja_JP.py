@@ -2788,9 +2788,9 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」はどのメッシュも動かしていないため、関節が体のどこにあるべきか分かりません。それが中に立"
         "つメッシュをソースに選び、アーマチュアをリグとして指定してください。"
     ),
-    '"{0}" moves "{1}". To give a target the rig that moves the source, use Fit Rig or Retarget.': (
-        "「{0}」は「{1}」を動かしています。ソースを動かすリグをターゲットに与えるには、「リグをフィット」"
-        "か「リターゲット」を使ってください。"
+    ('"{0}" moves "{1}". To give a target the rig that moves the source, use Retarget with Rig on.'): (
+        "「{0}」は「{1}」を動かしています。ソースを動かすリグをターゲットに与えるには、「リグ」をオンにし"
+        "て「リターゲット」を使ってください。"
     ),
     "Which armature is to be fitted is open. Name one as the Rig.": (
         "フィットするアーマチュアが分かりません。リグとして一つ指定してください。"

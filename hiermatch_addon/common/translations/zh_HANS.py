@@ -2250,9 +2250,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" moves no mesh, so nothing tells where in a body its joints belong. Choose as the Source a '
         "mesh in which it stands, and name the armature as the Rig."
     ): ("“{0}”没有驱动任何网格，因此无法得知其关节应在身体的哪里。请选择它所站立的网格作为源，并将该骨架指定为骨架。"),
-    '"{0}" moves "{1}". To give a target the rig that moves the source, use Fit Rig or Retarget.': (
-        "“{0}”驱动“{1}”。要把驱动源的骨架给目标，请使用“适配骨架”或“重定向”。"
-    ),
+    (
+        '"{0}" moves "{1}". To give a target the rig that moves the source, use Retarget with Rig on.'
+    ): "“{0}”带动“{1}”。要把带动源的绑定给予目标，请打开“绑定”并使用“重定向”。",
     "Which armature is to be fitted is open. Name one as the Rig.": ("不清楚要适配哪个骨架。请将一个骨架指定为骨架。"),
     '"{0}" is not an armature. Name one as the Rig.': "“{0}”不是骨架。请将一个骨架指定为骨架。",
     (

@@ -164,3 +164,18 @@ def test_it_waits_for_object_mode(standard):
     bpy.ops.object.mode_set(mode="EDIT")
     assert not fit.poll()
     bpy.ops.object.mode_set(mode="OBJECT")
+
+
+@pytest.mark.usefixtures("standard")
+def test_pressed_again_it_updates_the_rig_of_before():
+    before = len(bpy.data.objects)
+    for bound in (False, True, True):
+        assert fit(source="A", rig="Standard", target="B", my_rig_bind=bound) == {"FINISHED"}
+        assert len(bpy.data.objects) == before + 1
+        assert missed(bpy.data.objects["Standard B"]).mean() < 0.008
+    assert "updated" in bpy.context.scene.hiermatch_retarget.report.done
+    made, body = bpy.data.objects["Standard B"], bpy.data.objects["B Body"]
+    assert [modifier.object for modifier in body.modifiers if modifier.show_viewport] == [made]
+    bpy.data.objects.remove(made)
+    assert fit(source="A", rig="Standard", target="B") == {"FINISHED"}
+    assert "updated" not in bpy.context.scene.hiermatch_retarget.report.done
