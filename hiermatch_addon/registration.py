@@ -25,6 +25,7 @@ from .operators.carrying.wear import HIERMATCH_OT_wear
 from .operators.carrying.wrap import HIERMATCH_OT_wrap
 from .operators.checking.before_after import HIERMATCH_OT_before_after
 from .operators.checking.bend_joints import HIERMATCH_OT_test_poses
+from .operators.checking.show_fit import HIERMATCH_OT_show_fit
 from .operators.clear import HIERMATCH_OT_clear
 from .operators.demo import HIERMATCH_OT_add_demo_pair
 from .operators.export_match import HIERMATCH_OT_export_match
@@ -138,6 +139,7 @@ CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_OT_symmetrise,
     HIERMATCH_OT_test_poses,
     HIERMATCH_OT_before_after,
+    HIERMATCH_OT_show_fit,
     HIERMATCH_PG_bone_pair,
     HIERMATCH_OT_pair_bones,
     HIERMATCH_OT_rename_bones,

@@ -23,12 +23,14 @@ from ..scene.pair import check_mode, check_writable
 from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
     from ..properties.steering_properties import HIERMATCH_PG_steering
     from ..storage.halves import Half
 
-__all__ = ["HIERMATCH_OT_show", "HIERMATCH_OT_write_regions"]
+__all__ = ["HIERMATCH_OT_show", "HIERMATCH_OT_write_regions", "show_colors"]
 
 
 def _match_of(context: bpy.types.Context) -> tuple[Half, Half]:
@@ -115,11 +117,17 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
 
 def _show(context: bpy.types.Context, halves: tuple[Half, Half], view: str) -> None:
     prepare_view(context, halves, view)
+    meshes = (mesh_of(part) for half in halves for part in parts_of(half.obj))
+    show_colors(context, dict.fromkeys(meshes, attribute_of(halves[0].prefix, view)))
+
+
+def show_colors(context: bpy.types.Context, shown: Mapping[bpy.types.Mesh, str]) -> None:
+    """Show color attributes of meshes in the viewport of the context, and remember what they showed before."""
     steering = steering_of(context)
     before = _before(steering)
-    for mesh in (mesh_of(part) for half in halves for part in parts_of(half.obj)):
+    for mesh, name in shown.items():
         before.setdefault(mesh.name, mesh.attributes.active_color_name or "")
-        show_attribute(mesh, attribute_of(halves[0].prefix, view))
+        show_attribute(mesh, name)
     steering.before = json.dumps(before)
     shade_by_colors(context.space_data)
 

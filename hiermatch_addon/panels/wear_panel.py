@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..common.access import layout_of, view_layer_of
+from ..common.access import layout_of, mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..properties.panel_state import picked, state_of
@@ -16,6 +16,7 @@ from ..scene.worn.fitted_copies import fitted_to, original_of
 from ..scene.worn.garments import bound_items, selected_items
 from ..transfers.options.wear import WearOptions
 from ..transfers.retarget_properties import copy_named, retarget_of
+from ..transfers.wearing.fit_colors import FIT_NAMES, carriers_of_fit
 from .panel_text import draw_label, draw_text
 from .progress_bar import draw_progress
 from .retarget_panels import draw_report
@@ -65,6 +66,21 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         row.scale_y = 1.5
         copy_named(options, row.operator("hiermatch.wear", icon="MATCLOTH"), [*names, "refine"])
         draw_report(layout, context, self.bl_idname, has_before=True)
+        _draw_fit(layout, context)
+
+
+def _draw_fit(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the buttons that show how the items fit, once something carries the colors of it."""
+    carriers = carriers_of_fit(view_layer_of(context))
+    if not carriers:
+        return
+    shown, shading = mesh_of(carriers[0]).attributes.active_color_name, cast("Any", context.space_data).shading
+    is_seen = (shading.type, shading.color_type) == ("SOLID", "VERTEX") and shown in FIT_NAMES.values()
+    draw_label(layout, "Show Fit")
+    grid = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    grid.operator("hiermatch.show", text="Nothing", depress=not is_seen).view = "NONE"
+    for view, name in FIT_NAMES.items():
+        grid.operator("hiermatch.show_fit", text=name, depress=is_seen and shown == name).view = view
 
 
 def _item_of(context: bpy.types.Context, active: bpy.types.Object) -> bpy.types.Object:

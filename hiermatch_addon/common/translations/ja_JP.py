@@ -1712,6 +1712,24 @@ MESSAGES: Final[dict[str, str]] = {
     "Pushing items out": "アイテムを外へ押し出しています",
     "Rigid": "硬い",
     "Show Fit": "フィットを表示",
+    "Show in this viewport what Wear has written with Show Fit on": (
+        "「フィットを表示」をオンにした「着せる」が書き込んだものを、このビューポートに表示します"
+    ),
+    "Distance to Skin": "肌からの距離",
+    "Show how far clothes are from the skin, from white to dark red; blue is inside": (
+        "衣服が肌からどれだけ離れているかを白から暗い赤で表示します。青は内側です"
+    ),
+    "Pushed": "押し出し",
+    "Show how far clothes were pushed out of the skin, from white (not at all) to dark red": (
+        "衣服が肌からどれだけ押し出されたかを、白（なし）から暗い赤で表示します"
+    ),
+    "Uncertain": "不確かさ",
+    "Show where the fit is uncertain, from white (nowhere) to dark red": (
+        "フィットが不確かなところを、白（なし）から暗い赤で表示します"
+    ),
+    "Nothing here carries the colors of a fit. Press Wear with Show Fit on.": (
+        "フィットのカラーを持つものがありません。「フィットを表示」をオンにして「着せる」を押してください。"
+    ),
     "Shrink Key": "縮小キー",
     'The armature "{0}" has no bones {1} of "{2}". What they moved is moved by the bones of the skin below.': (
         'アーマチュア"{0}"には"{2}"のボーン{1}がありません。それらが動かしていた部分は、下の肌のボーンで動きます。'

@@ -1400,6 +1400,20 @@ MESSAGES: Final[dict[str, str]] = {
     "Pushing items out": "正在将物品向外推",
     "Rigid": "刚性",
     "Show Fit": "显示贴合情况",
+    "Show in this viewport what Wear has written with Show Fit on": "在此视图中显示穿戴所写入的贴合情况",
+    "Distance to Skin": "到皮肤的距离",
+    "Show how far clothes are from the skin, from white to dark red; blue is inside": (
+        "以白到深红显示服装离皮肤多远；蓝色表示在内部"
+    ),
+    "Pushed": "推出量",
+    "Show how far clothes were pushed out of the skin, from white (not at all) to dark red": (
+        "以白（没有）到深红显示服装从皮肤中被推出多远"
+    ),
+    "Uncertain": "不确定",
+    "Show where the fit is uncertain, from white (nowhere) to dark red": ("以白（没有）到深红显示贴合不确定的地方"),
+    "Nothing here carries the colors of a fit. Press Wear with Show Fit on.": (
+        "这里没有带有贴合颜色的物体。请打开显示贴合情况，再按穿戴。"
+    ),
     "Shrink Key": "收缩键",
     'The armature "{0}" has no bones {1} of "{2}". What they moved is moved by the bones of the skin below.': (
         '骨架"{0}"没有"{2}"的骨骼{1}。它们所带动的部分改由下方皮肤的骨骼带动。'

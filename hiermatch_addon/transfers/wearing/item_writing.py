@@ -17,7 +17,6 @@ from ...common.phrases import listed
 from ...scene.armatures import find_armature
 from ...scene.binding import bind
 from ...scene.deform_layer import read_group, write_weights
-from ...scene.mesh_io import add_colors
 from ...scene.modifier_bindings import bind_again
 from ...scene.pair import check_writable
 from ...scene.shape_key_io import (
@@ -42,16 +41,13 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from .item_weights import ItemWeights
 
-__all__ = ["check_key", "write_colors", "write_copy", "write_key"]
+__all__ = ["check_key", "write_copy", "write_key"]
 
 _KEY = "Fit to "
 """What the name of a shape key begins with that fits the item itself to a body."""
 
 _FITS = "hiermatch_fits"
 """Custom property of an item: the names of its shape keys that fit it to bodies, as a JSON text."""
-
-_FIT_NAMES = "Distance to Skin", "Pushed", "Uncertain"
-"""What the color attributes of a fitted item show."""
 
 
 def check_key(obj: bpy.types.Object, target: Side) -> None:
@@ -196,21 +192,3 @@ def _write_weights(copy: bpy.types.Object, weights: ItemWeights) -> None:
             copy.vertex_groups.remove(copy.vertex_groups[name])
     free = [number for number, name in enumerate(weights.names) if name not in weights.locked]
     write_weights(copy, [weights.names[number] for number in free], csr_array(weights.weights[:, free]))
-
-
-def write_colors(obj: bpy.types.Object, fitted: FittedItem) -> None:
-    """Write color attributes: distance to the skin, how far each vertex was pushed, and where it is uncertain."""
-    unit = max(float(np.quantile(np.abs(fitted.clearance), 0.95)), 1e-12)
-    pushed = fitted.pushed / max(float(fitted.pushed.max(initial=0.0)), 1e-12)
-    shown = ((fitted.clearance / unit).clip(0, 1), pushed, 1 - fitted.confidence.clip(0, 1))
-    inside = fitted.clearance < 0
-    mesh = mesh_of(obj)
-    for name, values in zip(_FIT_NAMES, shown, strict=True):
-        colors = np.ones((len(values), 4), np.float32)
-        # From white over orange to dark red; what is inside the skin is blue.
-        colors[:, 0], colors[:, 1], colors[:, 2] = 1 - 0.5 * values**2, 1 - 0.9 * values, (1 - values) ** 2
-        if name == _FIT_NAMES[0]:
-            colors[inside] = (0.05, 0.1, 0.9, 1.0)
-        if name in mesh.attributes:
-            mesh.attributes.remove(mesh.attributes[name])
-        add_colors(mesh, name, colors)

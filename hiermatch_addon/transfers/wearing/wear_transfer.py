@@ -25,12 +25,13 @@ from ..options.weights import WeightSettings
 from ..rig import RigTransfer
 from ..weights import WeightTransfer
 from .body_below import cover_body, worn_already
+from .fit_colors import write_colors
 from .fit_report import done, doubt
 from .followed_keys import read_body_keys, write_followed
 from .item_bones import ItemBones, read_item_bones
 from .item_motion import ItemMotion
 from .item_reading import check_place, read_item, still_there
-from .item_writing import check_key, write_colors, write_copy, write_key
+from .item_writing import check_key, write_copy, write_key
 
 if TYPE_CHECKING:
     import bpy

@@ -32,7 +32,7 @@ class Layout:
     def _part(self, *_arguments, **_names):
         return Layout(self.drawn)
 
-    row = column = split = box = _part
+    row = column = split = box = grid_flow = _part
 
     def panel(self, name, *, default_closed):
         self.drawn.append(("panel", name, default_closed))

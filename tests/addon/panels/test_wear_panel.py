@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from hiermatch.hiermatch_addon.panels import wear_panel
+from hiermatch.hiermatch_addon.transfers.wearing.fit_colors import FIT_NAMES
 
 from tests.addon.garments import add_item
 from tests.addon.panels.test_panels import Layout
@@ -101,3 +102,28 @@ def test_with_nothing_selected_all_that_hangs_on_the_rig_is_named_up_to_a_number
     named = [text for text in said if text.startswith("Item ")]
     assert named == [f"Item {letter}" for letter in "ABCDEF"]
     assert "2 more" in said
+
+
+def test_what_show_fit_has_written_can_be_shown(bodies, context):
+    def buttons():
+        drawn = []
+        panel = SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_wear")
+        wear_panel.HIERMATCH_PT_wear.draw(panel, context)
+        return [entry for entry in drawn if entry[0] == "switch"]
+
+    with pytest.raises(RuntimeError, match="Press Wear with Show Fit on"):
+        bpy.ops.hiermatch.show_fit(view="PUSHED")
+    assert not buttons()
+    item = add_item(bodies[1], "Shirt", 0.02)
+    item.data.color_attributes.new("Own", "FLOAT_COLOR", "POINT")
+    for name in FIT_NAMES.values():
+        item.data.color_attributes.new(name, "FLOAT_COLOR", "POINT")
+    item.data.attributes.active_color_name = "Own"
+    assert buttons() == [("switch", "hiermatch.show", True), *3 * [("switch", "hiermatch.show_fit", False)]]
+    for view, name in FIT_NAMES.items():
+        assert bpy.ops.hiermatch.show_fit(view=view) == {"FINISHED"}
+        assert item.data.attributes.active_color_name == name
+    context.space_data.shading.color_type = "VERTEX"
+    assert [pressed for *_, pressed in buttons()] == [False, False, False, True]
+    assert bpy.ops.hiermatch.show(view="NONE") == {"FINISHED"}
+    assert item.data.attributes.active_color_name == "Own"

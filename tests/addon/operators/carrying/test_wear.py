@@ -10,6 +10,7 @@ import pytest
 from hiermatch.hiermatch_addon.jobs import transfer_job
 from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
 from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
+from hiermatch.hiermatch_addon.transfers.wearing.fit_colors import carriers_of_fit
 
 from tests.addon.garments import add_item, depths, fitted, in_world, made_copies, wear
 from tests.addon.rigs import add_armature
@@ -253,6 +254,7 @@ def test_the_body_below_is_drawn_in_or_hidden(dressed_pair):
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
     assert target.data.shape_keys.key_blocks["Below Clothes"].value == 1
     assert wear("Shirt", wear_hide="MASK", wear_colors=True) == {"FINISHED"}
+    assert carriers_of_fit(bpy.context.view_layer) == [fitted("Shirt")]
     assert target.modifiers["Below Clothes"].vertex_group == "Below Clothes"
     assert "Below Clothes" not in target.data.shape_keys.key_blocks
     assert {"Distance to Skin", "Pushed", "Uncertain"} <= set(fitted("Shirt").data.attributes.keys())
