@@ -56,14 +56,18 @@ def is_idle(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
     return True
 
 
-def can_start(cls: type[bpy.types.Operator], context: bpy.types.Context, *, posing: bool = False) -> bool:
+def can_start(
+    cls: type[bpy.types.Operator], context: bpy.types.Context, *, posing: bool = False, painting: bool = False
+) -> bool:
     """Tell, and say on the disabled button, whether an operator that writes on objects may start.
 
-    One that is about armatures may do so while they are posed, too.
+    One that is about armatures may do so while they are posed, too, and one that leaves meshes alone while weights are
+    painted.
     """
     if not is_idle(cls, context):
         return False
-    if context.mode not in (("OBJECT", "POSE") if posing else ("OBJECT",)):
+    modes = ("OBJECT", *(["POSE"] if posing else []), *(["PAINT_WEIGHT"] if painting else []))
+    if context.mode not in modes:
         cls.poll_message_set(translated("Switch to Object Mode first"))
         return False
     return True

@@ -70,8 +70,8 @@ class HIERMATCH_OT_show(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
+        """Allow it in Object Mode and Pose Mode, when nothing else is running."""
+        return can_start(cls, context, posing=True)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Show it, and remember what was shown before."""

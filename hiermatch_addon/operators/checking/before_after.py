@@ -48,8 +48,8 @@ class HIERMATCH_OT_before_after(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
+        """Allow it in Object Mode, while posing and while painting weights, when nothing else is running."""
+        return can_start(cls, context, posing=True, painting=True)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Go from one to the other."""

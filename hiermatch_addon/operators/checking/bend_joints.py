@@ -45,8 +45,8 @@ class HIERMATCH_OT_test_poses(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
+        """Allow it in Object Mode, while posing and while painting weights, when nothing else is running."""
+        return can_start(cls, context, posing=True, painting=True)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Make them, or take them away."""

@@ -41,8 +41,8 @@ class HIERMATCH_OT_show_fit(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
+        """Allow it in Object Mode and Pose Mode, when nothing else is running."""
+        return can_start(cls, context, posing=True)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Show it on all that carries it; Nothing of Show brings back what was shown before."""

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.scene.posing.before_after import is_before
+from hiermatch.hiermatch_addon.scene.posing.exercise import is_exercising
 
 from tests.addon.garments import add_item, fitted, wear
 from tests.addon.operators.carrying.test_fit_rig import add_weights, shown
@@ -92,3 +93,22 @@ def test_clothes_are_taken_off_for_a_while(dense_pair, below):
     copy = fitted("Shirt")
     assert covered() == now
     assert not is_before(target)
+
+
+@pytest.mark.parametrize("mode", ["POSE", "WEIGHT_PAINT"])
+def test_it_and_test_poses_start_and_end_while_posing_and_painting(mode):
+    source, _ = add_rigged()
+    target, _ = add_target(source)
+    add_weights(source, target)
+    made, _ = fit_rig(source, target)
+    bpy.context.view_layer.objects.active = made if mode == "POSE" else target
+    bpy.ops.object.mode_set(mode=mode)
+    try:
+        for operator in (bpy.ops.hiermatch.before_after, bpy.ops.hiermatch.test_poses):
+            for shown in (True, False):
+                assert operator(target=target.name) == {"FINISHED"}
+                assert (is_before(target) or is_exercising(made)) == shown
+        assert bpy.context.object.mode == mode
+        assert bpy.ops.hiermatch.show.poll() == (mode == "POSE")
+    finally:
+        bpy.ops.object.mode_set(mode="OBJECT")
