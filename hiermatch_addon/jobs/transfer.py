@@ -49,11 +49,14 @@ class TransferReport:
         What was left out, or is to be known, and why: one sentence each.
     remarks : tuple of str
         The same, where it is no reason to worry.
+    carries : bool
+        Whether something was carried over, and not only found out.
     """
 
     done: str
     notes: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    carries: bool = True
 
 
 class Transfer(Protocol):

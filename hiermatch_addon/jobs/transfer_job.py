@@ -95,6 +95,17 @@ class Carried:
     seconds: float
     verdict: Verdict | None = None
 
+    @property
+    def done(self) -> str:
+        """What was carried over, or found out."""
+        done = [report.done for report in self.reports if report.done]
+        return ", ".join(done) if done else "nothing"
+
+    @property
+    def carries(self) -> bool:
+        """Whether something was carried over, and not only found out."""
+        return not self.reports or any(report.carries for report in self.reports)
+
 
 class _Leg:
     """The way to one target."""

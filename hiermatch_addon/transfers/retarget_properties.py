@@ -190,11 +190,10 @@ def remember_transfer(
 
 def _tell(report: Any, carried: list[Carried], left_out: str) -> None:  # noqa: ANN401 - HIERMATCH_PG_report
     """Write into a report what was carried."""
-    done = []
-    for one in carried:
-        what = [part.done for part in one.reports if part.done]
-        done.append(f'Carried to "{one.target}": {", ".join(what) if what else "nothing"}')
-    report.done = "\n".join(done)
+    report.done = "\n".join(
+        f'Carried to "{one.target}": {one.done}' if one.carries else f'Found for "{one.target}": {one.done}'
+        for one in carried
+    )
     verdicts = [one.verdict for one in carried if one.verdict is not None]
     report.verdict = "\n".join(verdict.said for verdict in verdicts)
     report.doubtful = any(verdict.doubtful for verdict in verdicts)

@@ -154,8 +154,10 @@ class WeightTransfer(Transfer):
             )
         filled = int(self._torn.sum())
         if filled:
+            parts = zip(parts_of(target), vertex_ranges(target), strict=True)
+            torn = listed([part.name for part, own in parts if self._torn[own].any()])
             self._notes.append(
-                f'Weights of {counted(filled, "vertex")} of "{target.name}" were filled in from the neighbors, far '
+                f"Weights of {counted(filled, 'vertex')} of {torn} were filled in from the neighbors, far "
                 f'from whose places on "{source.name}" the map had led.'
             )
         return TransferReport(

@@ -1756,7 +1756,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" should be checked: {1}.': '"{0}"を確認してください: {1}。',
     "kept {0} as they are": "{0}の形を保持",
     "pushed {0} of it out of what is below": "{0}を下のものの外へ押し出し",
-    "laid onto the skin of the other body": "相手の体の肌の上に置き",
+    "laid onto the skin of the other body": "相手の体の肌の上に配置",
     "what is below still shows through {0} of it": "下のものがまだ{0}で突き抜けています",
     "the match is uncertain below {0} of it": "その{0}の下でマッチングが不確かです",
     "the body ends below {0} of it": "その{0}の下には体がありません",
@@ -2099,6 +2099,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Setup: {0}": "設定：{0}",
     'Made "{0}" symmetric in {1} s: {2}': "「{0}」を{1}秒で対称にしました：{2}",
     'Carried to "{0}" in {1} s: {2}': "「{0}」に{1}秒で引き継ぎました：{2}",
+    'Found for "{0}" in {1} s: {2}': "「{0}」について{1}秒で見つけました：{2}",
     'There is no object called "{0}".': "「{0}」という名前のオブジェクトはありません。",
     (
         "It is open which mesh is the {0}: {1}. Select exactly two meshes (the active one is the Source), or "
@@ -2497,9 +2498,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Vertex groups of "{0}" for bones that move nothing of "{1}" were emptied: {2}.': (
         '"{1}"の何も動かさないボーンの"{0}"の頂点グループは空になりました: {2}。'
     ),
-    'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
-        "「{1}」の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。"
-    ),
+    (
+        'Weights of {0} of {1} were filled in from the neighbors, far from whose places on "{2}" the map had led.'
+    ): "{1}の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。",
     '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
         "「{1}」の{0}には有限の数でない値があるため、省かれました。値を修正してください。"
     ),
@@ -2737,6 +2738,7 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     "{0} and {1} more": "{0}ほか{1}個",
     'Carried to "{0}": {1}': "「{0}」に引き継ぎました：{1}",
+    'Found for "{0}": {1}': "「{0}」について見つけました：{1}",
     'the rig "{0}" with {1} and the rest pose "{2}"': "リグ「{0}」（{1}）とレストポーズ「{2}」",
     "updated": "更新済み",
     "a new object": "新しいオブジェクト",

@@ -1735,6 +1735,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Setup: {0}": "设置：{0}",
     'Made "{0}" symmetric in {1} s: {2}': "在 {1} 秒内使“{0}”对称：{2}",
     'Carried to "{0}" in {1} s: {2}': "在 {1} 秒内传递到“{0}”：{2}",
+    'Found for "{0}" in {1} s: {2}': "在 {1} 秒内为“{0}”找到：{2}",
     'There is no object called "{0}".': "没有名为“{0}”的物体。",
     (
         "It is open which mesh is the {0}: {1}. Select exactly two meshes (the active one is the Source), or "
@@ -2025,9 +2026,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Vertex groups of "{0}" for bones that move nothing of "{1}" were emptied: {2}.': (
         '"{0}" 中不带动 "{1}" 任何部分的骨骼的顶点组已被清空：{2}。'
     ),
-    'Weights of {0} of "{1}" were filled in from the neighbors, far from whose places on "{2}" the map had led.': (
-        "“{1}”的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。"
-    ),
+    (
+        'Weights of {0} of {1} were filled in from the neighbors, far from whose places on "{2}" the map had led.'
+    ): "{1} 的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。",
     '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
         "“{1}”的{0}含有不是有限数的值，因此被略去。请修复这些值。"
     ),
@@ -2208,6 +2209,7 @@ MESSAGES: Final[dict[str, str]] = {
     "The wrapped surface is folded in places, {0} of it.": "包裹后的表面有些地方发生折叠，占其 {0}。",
     "{0} and {1} more": "{0} 等另外 {1} 个",
     'Carried to "{0}": {1}': "已传递到“{0}”：{1}",
+    'Found for "{0}": {1}': "已为“{0}”找到：{1}",
     'the rig "{0}" with {1} and the rest pose "{2}"': "绑定“{0}”（{1}）和静置姿态“{2}”",
     "updated": "已更新",
     "a new object": "新物体",

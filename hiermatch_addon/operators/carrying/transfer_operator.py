@@ -218,9 +218,9 @@ class TransferOperator(JobOperator):
         for remark in dict.fromkeys(remark for report in reports for remark in report.remarks):
             self.report({"INFO"}, translated(remark))
         for one in carried:
-            done = [report.done for report in one.reports if report.done]
-            said = ", ".join(done) if done else "nothing"
-            self.report({"INFO"}, translated(f'Carried to "{one.target}" in {one.seconds:.1f} s: {said}'))
+            carried_to = f'Carried to "{one.target}" in {one.seconds:.1f} s: {one.done}'
+            found_for = f'Found for "{one.target}" in {one.seconds:.1f} s: {one.done}'
+            self.report({"INFO"}, translated(carried_to if one.carries else found_for))
             if one.verdict is not None:
                 self.report({"WARNING" if one.verdict.doubtful else "INFO"}, translated(one.verdict.said))
 

@@ -145,7 +145,7 @@ class BonePairTransfer(Transfer):
         pairing = cast("BonePairing", self.pairing)
         write_pairing(cast("bpy.types.Scene", context.scene), *rigs, pairing)
         count = counted(len(set(pairing.targets.tolist())), "paired bone")
-        return TransferReport(count, self._notes(pairing))
+        return TransferReport(count, self._notes(pairing), carries=False)
 
     def _notes(self, pairing: BonePairing) -> tuple[str, ...]:
         """Say what is to be known: names of sides that contradict."""

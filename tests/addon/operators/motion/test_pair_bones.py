@@ -2,6 +2,7 @@
 """The table of pairs of bones: made, changed by hand, kept in files."""
 
 import json
+import re
 
 import bpy
 import pytest
@@ -29,6 +30,8 @@ def test_meshes_of_a_character_are_taken_together_and_paired_right(rigs):
     assert ops.pair_bones(source="A", target="B") == {"FINISHED"}
     assert {(source, rigs[target]) for source, target in table()} == {(name, name) for name in someone().rig.names}
     assert all(0.3 < row.score <= 1 for row in bpy.context.scene.hiermatch_bone_pairs)
+    report = bpy.context.scene.hiermatch_retarget.reports["HIERMATCH_PT_motion"]
+    assert re.fullmatch(r'Found for "B": \d+ paired bones', report.done)
 
 
 def test_locked_pairs_stay_and_bones_without_a_source_stay_alone(rigs):
