@@ -355,6 +355,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Setup": "設定例",
     "Which of the paper's setups to use": "論文のどの設定例を使うか",
     "Geodesic Histograms": "ジオデシックヒストグラム",
+    "Default": "デフォルト",
     "Set Metric to Geodesic, Descriptor to Distance Histograms, as in figure 2 (a) of the paper": (
         "論文の図2(a)のように、「距離」を「ジオデシック」、「記述子」を「距離ヒストグラム」にします"
     ),

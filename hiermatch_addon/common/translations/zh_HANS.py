@@ -294,6 +294,7 @@ MESSAGES: Final[dict[str, str]] = {
     "Setup": "配置",
     "Which of the paper's setups to use": "使用论文中的哪个配置",
     "Geodesic Histograms": "测地线直方图",
+    "Default": "默认",
     "Set Metric to Geodesic, Descriptor to Distance Histograms, as in figure 2 (a) of the paper": (
         "按论文图 2 (a)，将度量设为测地线，描述符设为距离直方图"
     ),

@@ -24,7 +24,7 @@ from tests.addon.conftest import ROOT
 from tests.addon.scenes import QUICK, add_pair
 
 BUILT_IN = sorted((ROOT / "hiermatch_addon" / "presets" / "hiermatch").glob("*.py"))
-OF_USES = {"Fast_Preview", "Two-Legged_Characters", "Creatures", "Scans"}
+OF_USES = {"_Default", "Fast_Preview", "Two-Legged_Characters", "Creatures", "Scans"}
 
 
 def name(path):
@@ -73,7 +73,7 @@ def test_each_makes_valid_settings_of_its_own(path):
     untouched = options()
     use(path)
     assert isinstance(match_settings(scene.hiermatch), MatchSettings)
-    assert (options() == untouched) == (path.stem == "Geodesic_Histograms")
+    assert (options() == untouched) == (path.stem in ("_Default", "Geodesic_Histograms"))
 
 
 @pytest.mark.parametrize("path", BUILT_IN, ids=name)
@@ -153,6 +153,15 @@ def test_the_operator_writes_all_options():
     owners = {f"{scene}.hiermatch": MATCH_NAMES, f"{scene}.hiermatch_retarget": RETARGET_NAMES}
     expected = [f"{owner}.{option}" for owner, names in owners.items() for option in names]
     assert list(HIERMATCH_OT_add_preset.preset_values) == expected
+
+
+def test_the_way_back_comes_first():
+    """As Blender sorts them and writes their names."""
+    names = [
+        bpy.path.display_name(path.name, title_case=False)
+        for path in sorted(BUILT_IN, key=lambda one: one.stem.lower())
+    ]
+    assert names[0] == "Default"
 
 
 def test_the_menu_is_in_the_header():
