@@ -9,6 +9,7 @@ rest place.
 from __future__ import annotations
 
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import bmesh
@@ -22,6 +23,7 @@ from ..common.access import mesh_of, open_collections, view_layer_of
 from .demo_cat import add_modifier, build_body
 from .demo_rig import rig_cat
 from .demo_skeleton import BONES, STANDING, WALKING, bone_weights, build_armature, set_pose
+from .demo_store import STORED_SIZES, Cat, load_cats
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
 
     from .demo_skeleton import Pose
 
-__all__ = ["REST_ATTRIBUTE", "SOURCE_NAME", "TARGET_NAME", "add_demo_pair"]
+__all__ = ["REST_ATTRIBUTE", "SOURCE_NAME", "TARGET_NAME", "add_demo_pair", "build_cats"]
 
 REST_ATTRIBUTE: Final = "hm_rest"
 """Name of the attribute with the place of each vertex in the rest pose, common to both cats."""
@@ -67,13 +69,6 @@ class _Surface(NamedTuple):
     faces: list[list[int]]
 
 
-class _Posed(NamedTuple):
-    """Vertices (n, 3) in a pose, and how far they were lifted onto the ground after it."""
-
-    vertices: NDArray[np.float64]
-    lift: float
-
-
 def add_demo_pair(
     context: bpy.types.Context, *, source_vertices: int = 5500, target_vertices: int = 4000, rigged: bool = False
 ) -> tuple[bpy.types.Object, bpy.types.Object]:
@@ -93,29 +88,47 @@ def add_demo_pair(
     source, target : bpy.types.Object
         The new objects.
     """
+    sizes = (source_vertices, target_vertices)
+    standing, walking = load_cats() if sizes == STORED_SIZES else build_cats(*sizes)
+    source = _finished(SOURCE_NAME, standing, Matrix())
+    target = _finished(TARGET_NAME, walking, Matrix.Scale(_TARGET_UNIT, 4) @ _Y_UP)
+    place = _standing_at(_SOURCE_PLACE, _SOURCE_HEADING)
+    other_place = _standing_at(_TARGET_PLACE, _TARGET_HEADING)
+    cats = (place, standing.posed), (other_place, _TARGET_SIZE * walking.posed)
+    points = np.concatenate([vertices @ np.array(to.to_3x3()).T + to.translation for to, vertices in cats])
+    origin = _clear_place(context, points.min(axis=0), points.max(axis=0))
+    source.matrix_world = origin @ place
+    if rigged:
+        with _workshop() as scene:
+            rig_cat(context, source, build_armature("hm_armature", scene), standing.weights, standing.lift)
+    unit = Matrix.Scale(_TARGET_SIZE / _TARGET_UNIT, 4) @ _Y_UP.inverted()
+    target.matrix_world = origin @ other_place @ unit
+    _show(context, source, target)
+    return source, target
+
+
+@lru_cache(maxsize=1)
+def build_cats(source_vertices: int, target_vertices: int) -> tuple[Cat, Cat]:
+    """Build the two cats; those that were built last are remembered.
+
+    Parameters
+    ----------
+    source_vertices, target_vertices : int
+        About how many vertices they get.
+
+    Returns
+    -------
+    source, target : Cat
+        The standing and the walking one.
+    """
     with _workshop() as scene:
         body = build_body("hm_body")
         scene.collection.objects.link(body)
         rest = _Rest(_evaluated(scene, body))
         armature = build_armature("hm_armature", scene)
-        source_rest = _with_quads(_remeshed(scene, rest, source_vertices, _SOURCE_ATTITUDE))
-        target_rest = _remeshed(scene, rest, target_vertices, _TARGET_ATTITUDE)
-        source_posed = _posed(scene, armature, STANDING, source_rest, rest)
-        target_posed = _posed(scene, armature, WALKING, target_rest, rest)
-        source = _finished(SOURCE_NAME, source_rest, source_posed.vertices, Matrix())
-        place = _standing_at(_SOURCE_PLACE, _SOURCE_HEADING)
-        other_place = _standing_at(_TARGET_PLACE, _TARGET_HEADING)
-        cats = (place, source_posed.vertices), (other_place, _TARGET_SIZE * target_posed.vertices)
-        points = np.concatenate([vertices @ np.array(to.to_3x3()).T + to.translation for to, vertices in cats])
-        origin = _clear_place(context, points.min(axis=0), points.max(axis=0))
-        source.matrix_world = origin @ place
-        if rigged:
-            rig_cat(context, source, armature, rest.weights_at(source_rest.vertices), source_posed.lift)
-    target = _finished(TARGET_NAME, target_rest, target_posed.vertices, Matrix.Scale(_TARGET_UNIT, 4) @ _Y_UP)
-    unit = Matrix.Scale(_TARGET_SIZE / _TARGET_UNIT, 4) @ _Y_UP.inverted()
-    target.matrix_world = origin @ other_place @ unit
-    _show(context, source, target)
-    return source, target
+        source = _with_quads(_remeshed(scene, rest, source_vertices, _SOURCE_ATTITUDE))
+        target = _remeshed(scene, rest, target_vertices, _TARGET_ATTITUDE)
+        return _posed(scene, armature, STANDING, source, rest), _posed(scene, armature, WALKING, target, rest)
 
 
 def _clear_place(context: bpy.types.Context, low: NDArray[np.float64], high: NDArray[np.float64]) -> Matrix:
@@ -288,7 +301,7 @@ def _with_quads(surface: _Surface) -> _Surface:
         return _Surface(surface.vertices, _faces_of(build))
 
 
-def _posed(scene: bpy.types.Scene, armature: bpy.types.Object, pose: Pose, surface: _Surface, rest: _Rest) -> _Posed:
+def _posed(scene: bpy.types.Scene, armature: bpy.types.Object, pose: Pose, surface: _Surface, rest: _Rest) -> Cat:
     """Move the vertices of a surface in rest with the bones; feet on the ground."""
     thing = _new_object(scene, surface)
     weights = rest.weights_at(surface.vertices)
@@ -300,14 +313,14 @@ def _posed(scene: bpy.types.Scene, armature: bpy.types.Object, pose: Pose, surfa
     set_pose(armature, pose)
     vertices = _evaluated(scene, thing).vertices
     lift = -float(vertices[:, 2].min())
-    return _Posed(vertices + np.array([0, 0, lift]), lift)
+    return Cat(surface.vertices, vertices + np.array([0, 0, lift]), surface.faces, weights, lift)
 
 
-def _finished(name: str, rest: _Surface, posed: NDArray[np.float64], frame: Matrix) -> bpy.types.Object:
+def _finished(name: str, cat: Cat, frame: Matrix) -> bpy.types.Object:
     """Make the object: the posed vertices seen from a frame, and where they were in rest."""
-    mesh = _new_mesh(name, _Surface(posed, rest.faces))
+    mesh = _new_mesh(name, _Surface(cat.posed, cat.faces))
     attribute: Any = mesh.attributes.new(REST_ATTRIBUTE, "FLOAT_VECTOR", "POINT")
-    attribute.data.foreach_set("vector", rest.vertices.astype(np.float32).ravel())
+    attribute.data.foreach_set("vector", cat.rest.astype(np.float32).ravel())
     mesh.transform(frame)
     mesh.shade_smooth()
     return bpy.data.objects.new(name, mesh)

@@ -14,11 +14,12 @@ from .demo_skeleton import BONES, STANDING, set_pose
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["RIG_NAME", "posed_joints", "rig_cat"]
+__all__ = ["LEAST_WEIGHT", "RIG_NAME", "posed_joints", "rig_cat"]
 
 RIG_NAME: Final = "Demo Cat Rig"
 
-_LEAST_WEIGHT = 1e-4
+LEAST_WEIGHT = 1e-4
+"""Of a bone on a vertex; smaller ones are not written."""
 
 _TOGETHER = 1e-4
 """Distance up to which a head is at the parent's tail."""
@@ -102,7 +103,7 @@ def _bind(cat: bpy.types.Object, armature: bpy.types.Object, weights: NDArray[np
     """Let the armature move the cat."""
     for bone, column in zip(BONES, weights.T, strict=True):
         group = cat.vertex_groups.new(name=bone.name)
-        for vertex in np.flatnonzero(column > _LEAST_WEIGHT).tolist():
+        for vertex in np.flatnonzero(column > LEAST_WEIGHT).tolist():
             group.add([vertex], column[vertex], "REPLACE")
     modifier = cast("bpy.types.ArmatureModifier", cat.modifiers.new("Armature", "ARMATURE"))
     modifier.object = armature

@@ -58,13 +58,14 @@ def test_scipy_is_the_version_the_engine_is_tested_with():
 
 
 def test_zips_hold_the_runtime_and_nothing_else(packed_names):
-    """Every source file of the two packages, the root's own files, the platform's wheels."""
+    """Every source file of the two packages, the demo cats, the root's own files, the platform's wheels."""
     sources = {
         path.relative_to(ROOT).as_posix()
         for package in ("engine", "hiermatch_addon")
         for path in (ROOT / package).rglob("*.py")
     }
     assert "engine/mesh/triangle_mesh.py" in sources
+    sources.add("hiermatch_addon/demo/demo_cats.npz")
     for names in packed_names.values():
         wheels = {name for name in names if name.startswith("wheels/")}
         assert names - wheels == sources | {"__init__.py", "blender_manifest.toml", "LICENSE"}

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hiermatch.engine import TriangleMesh
 from hiermatch.engine.geometry.geodesics import GeodesicSolver
-from hiermatch.hiermatch_addon.demo import demo_pair, demo_truth
+from hiermatch.hiermatch_addon.demo import demo_pair, demo_store, demo_truth
+from hiermatch.hiermatch_addon.demo.demo_rig import LEAST_WEIGHT
 from hiermatch.hiermatch_addon.scene.mesh_io import add_vertex_group, read_mesh
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
@@ -302,6 +303,7 @@ def test_failure_leaves_nothing_behind(monkeypatch):
         raise ValueError("no pose today")
 
     monkeypatch.setattr(demo_pair, "set_pose", fail)
+    demo_pair.build_cats.cache_clear()
     with pytest.raises(ValueError, match="no pose"):
         demo_pair.add_demo_pair(bpy.context, **SMALL)
     assert snapshot() == before
@@ -344,3 +346,28 @@ def test_the_cats_stand_beside_what_is_there():
             assert (one[0] >= other[1]).any() or (other[0] >= one[1]).any()
     assert light.name in bpy.context.scene.objects
     assert first[0][0][0] < 4
+
+
+@pytest.mark.skipif(bpy.app.version[:2] != (5, 0), reason="another Blender thins meshes out in another way")
+def test_the_stored_cats_are_what_is_built(cats):
+    assert cats
+    built, stored = demo_pair.build_cats(*demo_store.STORED_SIZES), demo_store.load_cats()
+    for made, kept in zip(built, stored, strict=True):
+        assert made.faces == kept.faces
+        np.testing.assert_allclose(kept.rest, made.rest, atol=1e-6)
+        np.testing.assert_allclose(kept.posed, made.posed, atol=1e-6)
+        assert kept.lift == pytest.approx(made.lift)
+    np.testing.assert_allclose(stored[0].weights, built[0].weights, atol=LEAST_WEIGHT)
+
+
+def test_no_surface_is_thinned_out_for_the_usual_sizes_nor_twice_for_others(monkeypatch):
+    made = []
+    remeshed = demo_pair._remeshed  # noqa: SLF001
+    monkeypatch.setattr(demo_pair, "_remeshed", lambda *given: made.append(given) or remeshed(*given))
+    demo_pair.build_cats.cache_clear()
+    demo_pair.add_demo_pair(bpy.context, rigged=True)
+    assert not made
+    for rigged in (False, True):
+        demo_pair.add_demo_pair(bpy.context, **SMALL, rigged=rigged)
+        assert len(made) == 2
+    assert not [scene for scene in bpy.data.scenes if scene.name.startswith("hm_")]
