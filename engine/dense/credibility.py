@@ -183,9 +183,12 @@ def is_placed(in_place: float) -> bool:
     return is_likely(-np.inf, in_place)
 
 
-def has_failed(known: float | None, in_place: float = 0.0) -> bool:
-    """Say whether a map is less probably right than surfaces as much alike as `FAILED` are, see `probability_right`."""
-    return probability_right(known, in_place) < probability_right(FAILED)
+def has_failed(known: float | None, confidence: float) -> bool:
+    """Say whether a map of whole bodies is not trusted, so that one of them may be a part that was closed.
+
+    However much alike they seem: half a body may be laid onto all of it, and stand where it does.
+    """
+    return known is not None and confidence < DOUBTFUL
 
 
 def may_reach(least: float, known: float, in_place: float, rise: float = RISE) -> bool:

@@ -77,7 +77,7 @@ def part_matched_steps(
     """
     quality, maps = result.dense.quality, (result.dense.source_to_target, result.dense.target_to_source)
     parts = has_border(x), has_border(y)
-    if not any(parts) and not has_failed(quality.likeness, quality.in_place):
+    if not any(parts) and not has_failed(quality.likeness, quality.confidence):
         return result
     if not is_less_alike(quality.likeness, CREDIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
         return result

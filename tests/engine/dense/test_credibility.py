@@ -5,6 +5,7 @@ import pytest
 from engine.dense.credibility import (
     ALL_ALIKE,
     CREDIBLE,
+    DOUBTFUL,
     EVEN,
     FAILED,
     LITTLE_RISE,
@@ -107,10 +108,13 @@ def test_a_map_is_right_by_its_likeness_or_by_what_it_leaves_in_place():
     assert not is_likely(FAILED, 0.1)
     assert is_placed(0.5)
     assert not is_placed(0.49)
-    assert has_failed(FAILED - 0.1)
-    assert not has_failed(FAILED + 0.1)
-    assert not has_failed(FAILED - 5, 0.5)
     assert is_likely(None)
+
+
+def test_a_map_has_failed_if_it_is_not_trusted_and_landmarks_do_not_lead_it():
+    assert has_failed(EVEN, DOUBTFUL - 0.01)
+    assert not has_failed(FAILED - 5, DOUBTFUL)
+    assert not has_failed(None, 0.0)
 
 
 def test_half_turns_are_not_in_place_and_poses_are():

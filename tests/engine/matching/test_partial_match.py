@@ -77,6 +77,21 @@ def test_a_whole_body_is_matched_with_the_front_half_of_one(result, whole, half)
     assert np.mean(errors(result.source_to_target, whole[1], half[1])[shown]) < 0.02
 
 
+def test_a_half_that_was_closed_and_stands_where_the_whole_does_is_known_to_be_one(whole):
+    opened, rest = cut(*creature(0.0, 10), front)
+    ends = np.concatenate([opened.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])]).tolist()
+    border = [(head, tail, len(rest)) for tail, head in ends if [head, tail] not in ends]
+    rim = np.unique(border)[:-1]
+    half = TriangleMesh(
+        np.vstack([opened.vertices, opened.vertices[rim].mean(axis=0)]), np.vstack([opened.triangles, border])
+    )
+    assert not len(half.boundary_edges)
+    found = match(whole[0], half, QUICK)
+    assert np.mean(errors(found.target_to_source, np.vstack([rest, rest[rim].mean(axis=0)]), whole[1])) < 0.02
+    assert found.quality.confidence > 0.5
+    assert found.quality.source_coverage < 0.6
+
+
 def test_what_the_half_lacks_is_said_to_have_no_partner(result, whole):
     lacking = whole[1][:, 0] < -0.15
     assert (result.source_to_target.confidence[lacking] == 0).mean() > 0.95
