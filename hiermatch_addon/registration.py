@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from typing import Any, Final
 
 import bpy
 
 from ..engine import close_helpers
 from .command_line import register_command, unregister_command
+from .common.access import window_manager_of
 from .common.translations import register_translations, unregister_translations, use_context
+from .jobs.job_operator import JobOperator
+from .jobs.running import modal_operators
 from .operators.answer import HIERMATCH_OT_answer
 from .operators.cancel import HIERMATCH_OT_cancel
 from .operators.carrying.fit_my_rig import HIERMATCH_OT_fit_my_rig
@@ -57,6 +61,7 @@ from .operators.steering.edit_pairs import (
     HIERMATCH_OT_select_pair,
 )
 from .operators.steering.guide_me import HIERMATCH_OT_guide_me
+from .operators.steering.landmark_clicks import LandmarkClicks
 from .operators.steering.landmark_files import HIERMATCH_OT_load_landmarks, HIERMATCH_OT_save_landmarks
 from .operators.steering.mirror_landmarks import HIERMATCH_OT_mirror_landmarks
 from .operators.steering.pick_landmarks import HIERMATCH_OT_pick_landmarks
@@ -178,41 +183,57 @@ _ATTACHMENTS: Final[tuple[tuple[type[Any], str, type[Any]], ...]] = (
 )
 """Each owner gets a property of that name and group."""
 
+_SERVICES: Final = (
+    (register_presets, unregister_presets),
+    (start_watching, stop_watching),
+    (start_following, stop_following),
+    (register_command, unregister_command),
+    (start_overlay, stop_overlay),
+)
+"""What is begun when all classes are there, and what ends it, however far it has come."""
+
 _TABLE: Final = "hiermatch_bone_pairs"
 """The scene's table of pairs of bones."""
 
+_registered: Final = ExitStack()
+"""What takes back all that `register` has done."""
+
 
 def register() -> None:
-    """Register all classes and attach the property groups to their owners."""
-    register_translations()
-    for cls in CLASSES:
-        use_context(cls)
-        bpy.utils.register_class(cls)
+    """Register all classes and attach the property groups to their owners: everything, or nothing if that fails."""
     properties: Any = bpy.props
-    for owner, name, group in _ATTACHMENTS:
-        setattr(owner, name, properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group))
-    table = properties.CollectionProperty(
-        name="Bone Pairs", description="Which bones of two armatures belong together", type=HIERMATCH_PG_bone_pair
-    )
-    setattr(bpy.types.Scene, _TABLE, table)
-    register_presets()
-    start_watching()
-    start_following()
-    register_command()
-    start_overlay()
+    with ExitStack() as undo:
+        register_translations()
+        undo.callback(unregister_translations)
+        for cls in CLASSES:
+            use_context(cls)
+            bpy.utils.register_class(cls)
+            undo.callback(bpy.utils.unregister_class, cls)
+        for owner, name, group in _ATTACHMENTS:
+            setattr(owner, name, properties.PointerProperty(name="HierMatch", description=group.__doc__, type=group))
+            undo.callback(delattr, owner, name)
+        table = properties.CollectionProperty(
+            name="Bone Pairs", description="Which bones of two armatures belong together", type=HIERMATCH_PG_bone_pair
+        )
+        setattr(bpy.types.Scene, _TABLE, table)
+        undo.callback(delattr, bpy.types.Scene, _TABLE)
+        for start, stop in _SERVICES:
+            undo.callback(stop)
+            start()
+        undo.callback(close_helpers)
+        undo.callback(_end_modal)
+        _registered.enter_context(undo.pop_all())
 
 
 def unregister() -> None:
     """Undo `register`."""
-    close_helpers()
-    stop_overlay()
-    unregister_command()
-    stop_following()
-    stop_watching()
-    unregister_presets()
-    delattr(bpy.types.Scene, _TABLE)
-    for owner, name, _ in reversed(_ATTACHMENTS):
-        delattr(owner, name)
-    for cls in reversed(CLASSES):
-        bpy.utils.unregister_class(cls)
-    unregister_translations()
+    _registered.close()
+
+
+def _end_modal() -> None:
+    """End what works or waits for clicks in a window: Blender only drops it, and its timer and its texts stay."""
+    context = bpy.context
+    for window, operator in modal_operators(window_manager_of(context)):
+        if isinstance(operator, (JobOperator, LandmarkClicks)):
+            with context.temp_override(window=window):
+                operator.cancel(context)

@@ -10,7 +10,7 @@ import bpy
 from ..common.access import window_manager_of
 from ..common.translated_text import translated
 
-__all__ = ["can_start", "is_idle", "is_running", "running_panel", "start_soon"]
+__all__ = ["can_start", "is_idle", "is_running", "modal_operators", "running_panel", "start_soon"]
 
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
@@ -23,9 +23,19 @@ def running_panel(window_manager: bpy.types.WindowManager) -> str:
 
     Operators that wait for clicks, or for a name in the file browser, run modally, too, but do no work.
     """
-    operators: Any = (operator for window in window_manager.windows for operator in window.modal_operators)
-    ours = (operator for operator in operators if operator.bl_idname.startswith("HIERMATCH_OT_"))
-    return next((panel for operator in ours if (panel := getattr(operator, "panel", ""))), "")
+    operators = (operator for _, operator in modal_operators(window_manager))
+    return next((panel for operator in operators if (panel := getattr(operator, "panel", ""))), "")
+
+
+def modal_operators(window_manager: bpy.types.WindowManager) -> list[tuple[bpy.types.Window, Any]]:
+    """Return our operators that run modally, each with its window."""
+    windows: Any = window_manager.windows
+    return [
+        (window, operator)
+        for window in windows
+        for operator in window.modal_operators
+        if operator.bl_idname.startswith("HIERMATCH_OT_")
+    ]
 
 
 def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> None:  # noqa: ANN401 - the operator's own

@@ -239,7 +239,8 @@ def start_overlay() -> None:
 def stop_overlay() -> None:
     """Undo `start_overlay`."""
     for handlers, function in _handlers():
-        handlers.remove(function)
+        if function in handlers:  # another add-on may have cleared the list
+            handlers.remove(function)
     while _overlay.handles:
         bpy.types.SpaceView3D.draw_handler_remove(_overlay.handles.pop(), "WINDOW")
     _overlay.forget()

@@ -87,7 +87,8 @@ def start_watching() -> None:
 def stop_watching() -> None:
     """Undo `start_watching`."""
     for handlers, function in _handlers():
-        handlers.remove(function)
+        if function in handlers:  # another add-on may have cleared the list
+            handlers.remove(function)
     if bpy.app.timers.is_registered(_look):
         bpy.app.timers.unregister(_look)
 

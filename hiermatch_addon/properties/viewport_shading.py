@@ -66,7 +66,8 @@ def start_following() -> None:
 def stop_following() -> None:
     """Undo `start_following`."""
     for handlers in _handlers():
-        handlers.remove(_on_undo)
+        if _on_undo in handlers:  # another add-on may have cleared the list
+            handlers.remove(_on_undo)
 
 
 def _handlers() -> tuple[list[Any], ...]:

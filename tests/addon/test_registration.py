@@ -10,6 +10,9 @@ from dataclasses import fields
 import bpy
 import pytest
 from hiermatch.engine import MatchSettings
+from hiermatch.hiermatch_addon import registration
+from hiermatch.hiermatch_addon.jobs.job_operator import JobOperator
+from hiermatch.hiermatch_addon.operators.steering.landmark_clicks import LandmarkClicks
 from hiermatch.hiermatch_addon.overlay import drawing
 from hiermatch.hiermatch_addon.properties import freshness
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, SETTING_NAMES, match_settings
@@ -55,6 +58,57 @@ def test_unregister_leaves_nothing_and_register_comes_back(extension):
     assert bpy.context.scene.hiermatch.points == MatchSettings().points
     assert len(our_handlers()) == 8
     assert {cls.bl_idname.split(".")[1] for cls in OPERATORS} == set(dir(bpy.ops.hiermatch))
+
+
+def test_unregister_ends_what_runs_in_a_window(extension, monkeypatch):
+    """Blender drops it without a word: the timer and the text in the status bar would stay."""
+    ended = []
+
+    class Working(JobOperator):
+        def cancel(self, context):
+            ended.append((self, context.window))
+
+    class Waiting(LandmarkClicks):
+        def cancel(self, context):
+            ended.append((self, context.window))
+
+    window = bpy.context.window_manager.windows[0]
+    running = [(window, Working()), (window, Waiting()), (window, object())]
+    monkeypatch.setattr(registration, "modal_operators", lambda _manager: running)
+    extension.unregister()
+    try:
+        assert ended == [(operator, window) for window, operator in running[:2]]
+    finally:
+        extension.register()
+
+
+def test_unregister_does_without_handlers_that_somebody_has_cleared(extension):
+    for name in ("load_post", "depsgraph_update_post", "undo_post", "frame_change_post"):
+        getattr(bpy.app.handlers, name).clear()
+    extension.unregister()
+    try:
+        assert not hasattr(bpy.types.Scene, "hiermatch")
+        assert not our_handlers()
+    finally:
+        extension.register()
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "broken"),
+    [(registration, "CLASSES", (*CLASSES, object)), (bpy.utils, "register_cli_command", None)],
+)
+def test_what_cannot_be_registered_leaves_nothing(extension, monkeypatch, owner, name, broken):
+    extension.unregister()
+    try:
+        with monkeypatch.context() as patched:
+            patched.setattr(owner, name, broken)
+            with pytest.raises((TypeError, RuntimeError)):
+                extension.register()
+        assert not hasattr(bpy.types.Scene, "hiermatch")
+        assert not [found for found in dir(bpy.types) if found.startswith("HIERMATCH_")]
+        assert not our_handlers()
+    finally:
+        extension.register()
 
 
 def test_unregister_frees_what_the_overlay_has_drawn(extension):

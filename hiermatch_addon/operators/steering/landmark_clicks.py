@@ -14,7 +14,7 @@ from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.redraw import redraw_views
 from ...common.translated_text import translated
-from ...jobs.running import can_start, is_running
+from ...jobs.running import can_start, is_running, modal_operators
 from ...overlay.drawing import show_pending
 from ...properties.steering_lists import sync_lists
 from ...properties.steering_properties import steering_of
@@ -89,10 +89,9 @@ class LandmarkClicks(_Operator):
         self._wait_for(source, target)
         manager: Any = window_manager_of(context)
         self.had_overlay = steering_of(context).show_overlay
-        for window in manager.windows:
-            for other in window.modal_operators:
-                if isinstance(other, LandmarkClicks) and not other.replaced:
-                    other.replaced, self.had_overlay = True, other.had_overlay
+        for _, other in modal_operators(manager):
+            if isinstance(other, LandmarkClicks) and not other.replaced:
+                other.replaced, self.had_overlay = True, other.had_overlay
         steering_of(context).show_overlay = True
         self._timer = manager.event_timer_add(_LOOKS, window=context.window)
         manager.modal_handler_add(self)
