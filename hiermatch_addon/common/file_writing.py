@@ -14,23 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-__all__ = ["beside", "check_place", "read_text", "write_whole"]
-
-
-def read_text(path: Path) -> str:
-    """Read a text file.
-
-    Raises
-    ------
-    ObjectError
-        If it cannot be read, or is none.
-    """
-    try:
-        return path.read_text(encoding="utf8")
-    except OSError as error:
-        raise ObjectError(f'"{path}" cannot be read: {error.strerror}. Choose another file.') from error
-    except UnicodeDecodeError as error:
-        raise ObjectError(f'"{path}" is no text. Choose a file that HierMatch has written.') from error
+__all__ = ["beside", "check_place", "write_whole"]
 
 
 def check_place(path: Path) -> None:

@@ -13,7 +13,7 @@ LONGEST_ID = bpy.types.ID.bl_rna.properties["name"].length_max - 1  # type: igno
 """Bytes in the name of an object or an action, at most: 63 until Blender 4.5, 255 from 5.0 on."""
 
 LONGEST_KEY = 63
-"""Bytes in the name of a shape key, at most."""
+"""Bytes in the name of a shape key, a vertex group or a custom property, at most."""
 
 
 def shortened(name: str, longest: int, ending: str = "") -> str:

@@ -13,7 +13,8 @@ from mathutils import Matrix, Quaternion, Vector
 
 from ...engine import BonePairing
 from ..common.errors import ObjectError
-from ..common.file_writing import read_text, write_whole
+from ..common.file_reading import BAD_FILE, parsed_json, read_text
+from ..common.file_writing import write_whole
 from ..common.phrases import listed
 from ..scene.armatures import armature_of
 from ..scene.motion.rest_changes import REST_NUMBERS, change_of_rest, rest_points
@@ -287,11 +288,11 @@ def load_pairs(
     """
     text = read_text(path)
     try:
-        read = json.loads(text)
+        read = parsed_json(text)
         if read["format"] != _FORMAT or read["version"] != _VERSION:
-            raise ValueError  # noqa: TRY301 - told below
+            raise ValueError
         pairs = [_checked(pair) for pair in read["pairs"]]
-    except (ValueError, KeyError, TypeError) as error:
+    except BAD_FILE as error:
         raise ObjectError("The file holds no pairs of bones. Choose one that was exported from HierMatch.") from error
     bones = [set(armature_of(rig).bones.keys()) for rig in (source, target)]
     wanted = [[pair[side] for pair in pairs if pair[side]] for side in ("source", "target")]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..common.errors import ObjectError
+from ..common.file_reading import BAD_FILE, parsed_json
 from ..scene.character import own_positions, topology_of
 from .landmarks import Landmark
 
@@ -75,12 +76,14 @@ def landmarks_from_text(text: str, source: Side, target: Side) -> tuple[list[Lan
         If the text is no such file, or a mesh has no vertex where a landmark was.
     """
     try:
-        data = json.loads(text)
+        data = parsed_json(text)
         known = data["format"] == _FORMAT and data["version"] <= _VERSION
         rows = [(int(row["number"]), bool(row["use"]), str(row.get("name", ""))) for row in data["landmarks"]]
         sides = [[_place(row[role]) for row in data["landmarks"]] for role in _ROLES]
         digests = [str(data[role]["faces"]) for role in _ROLES]
-    except (ValueError, KeyError, TypeError) as error:
+        if any(len(dict(places)) < len(places) for places in sides):
+            raise ValueError("a vertex has two landmarks")
+    except BAD_FILE as error:
         raise ObjectError(
             "This is no file of landmarks, or it is damaged. Choose one that Save Landmarks has written."
         ) from error

@@ -10,9 +10,6 @@ from __future__ import annotations
 
 import io
 import json
-import math
-import zipfile
-import zlib
 from dataclasses import dataclass, replace
 from itertools import chain, repeat, zip_longest
 from typing import TYPE_CHECKING, Any
@@ -21,7 +18,9 @@ import numpy as np
 
 from ...engine import DIRECT, MIRRORED, HierMatchError
 from ..common.errors import ObjectError
+from ..common.file_reading import BAD_FILE, parsed_json
 from ..common.file_writing import write_whole
+from ..common.long_names import LONGEST_KEY
 from .checked_arrays import MAPS, CheckedArrays
 from .stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
@@ -32,6 +31,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from .vertex_maps import StoredMaps
+
+    _Read = tuple[Any, Mapping[str, NDArray[Any]], int]  # header, arrays, and bytes of the largest that is not yet read
 
 __all__ = ["FORMAT", "SUFFIXES", "VERSION", "MatchFile", "load_match", "packed_match", "save_match", "unpacked_match"]
 
@@ -44,21 +45,14 @@ VERSION = 1
 SUFFIXES = (".npz", ".json")
 """How the names of such files end."""
 
-_BAD_FILE = (
-    ValueError,
-    OverflowError,
-    KeyError,
-    TypeError,
-    AttributeError,
-    EOFError,
-    IndexError,
-    MemoryError,
-    NotImplementedError,
-    RuntimeError,
-    zipfile.BadZipFile,
-    zlib.error,
-)
-"""What Python's and NumPy's readers raise of files that are damaged or something else."""
+_LARGEST_HEADER = 1 << 24
+"""Bytes that a header may have, 16 MB: that of a match has some thousand, and notes may be long."""
+
+_LARGEST = 1 << 31
+"""Blender keeps no whole number as large as that; no number of a match, of whatever kind, comes near it."""
+
+_PLACE = 24
+"""Bytes in the largest array of a file for each vertex: three numbers of double precision."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,18 +133,20 @@ def load_match(path: Path) -> MatchFile:
     return _checked(path.name, read, content)
 
 
-def _checked(name: str, read: Callable[[bytes], tuple[Any, dict[str, NDArray[Any]]]], content: bytes) -> MatchFile:
+def _checked(name: str, read: Callable[[bytes], _Read], content: bytes) -> MatchFile:
     """Make a match of what a file holds, if it is one."""
     try:
-        header, arrays = read(content)
+        header, arrays, largest = read(content)
         if not isinstance(header, dict) or header.get("format") != FORMAT:
             raise ObjectError(f'"{name}" is no match that HierMatch has exported. Choose another file.')
         if header.get("version") != VERSION:
             raise ObjectError(f'"{name}" was exported by a later version of HierMatch. Update the add-on.')
+        if largest > _LARGEST_HEADER + _PLACE * max(int(header[role]["vertices"]) for role in ("source", "target")):
+            raise ValueError("it holds more than a match of such meshes does")
         return _match_of(header, arrays)
     except HierMatchError:
         raise
-    except _BAD_FILE as error:
+    except BAD_FILE as error:
         raise ObjectError(f'"{name}" is damaged or no match file: {error}. Export the match again.') from error
 
 
@@ -161,15 +157,18 @@ def _kind_of(path: Path) -> str:
     return kind
 
 
-def _read_npz(content: bytes) -> tuple[Any, dict[str, NDArray[Any]]]:
-    with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-        arrays = {name: archive[name] for name in archive.files}
-    return json.loads(arrays.pop("header").tobytes().decode()), arrays
+def _read_npz(content: bytes) -> _Read:
+    """Read the header; the arrays are read when they are asked for."""
+    archive = np.load(io.BytesIO(content), allow_pickle=False)
+    sizes = {member.filename: member.file_size for member in archive.zip.infolist()}
+    if sizes["header.npy"] > _LARGEST_HEADER:
+        raise ValueError("its header is too large")
+    return parsed_json(archive["header"].tobytes().decode()), archive, max(sizes.values())
 
 
-def _read_json(content: bytes) -> tuple[Any, dict[str, NDArray[Any]]]:
-    plain = json.loads(content.decode())
-    return plain["header"], {name: np.array(values) for name, values in plain["arrays"].items()}
+def _read_json(content: bytes) -> _Read:
+    plain = parsed_json(content.decode("utf-8-sig"))
+    return plain["header"], {name: np.array(values) for name, values in plain["arrays"].items()}, 0
 
 
 def _header(match: MatchFile) -> dict[str, Any]:
@@ -237,7 +236,9 @@ def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> 
     chosen, described = int(header.get("chosen", header.get("mirrored", 0))), header["answers"]
     usual = chain((DIRECT, MIRRORED), repeat(""))  # what a file says nothing of
     names = [str(plain.get("name", name)) for plain, name in zip(described, usual, strict=False)]
-    if not (0 <= chosen < len(names) == len(set(names)) and all(names)):
+    if not (
+        0 <= chosen < len(names) == len(set(names)) and all(0 < len(name.encode()) <= LONGEST_KEY for name in names)
+    ):
         raise ValueError("it has not the answers that it names")
     order = (chosen, *(number for number in range(len(names)) if number != chosen))
     kind, source_points = str(header.get("kind", "match")), read.points("source_points", n)
@@ -257,7 +258,7 @@ def _match_of(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> 
         names=(str(sides[0]["name"]), str(sides[1]["name"])),
         topologies=(str(sides[0].get("topology", "")), str(sides[1].get("topology", ""))),
         positions=(str(sides[0].get("positions", "")), str(sides[1].get("positions", ""))),
-        written=replace(Written(**written), dense=maps is not None),
+        written=replace(Written(**written), dense=maps is not None, excluded=("", "")),
         source_points=source_points,
         answers=tuple(answers[number] for number in sorted(answers)),
         chosen=chosen,
@@ -288,8 +289,8 @@ def _answer(name: str, plain: Mapping[str, Any], points: CornerPoints, distortio
 
 
 def _finite(value: Any) -> float:  # noqa: ANN401 - whatever JSON holds
-    """Return a number that JSON and Blender can hold."""
+    """Return a number that JSON and Blender can hold, also as a whole number."""
     number = float(value)
-    if not math.isfinite(number):
-        raise ValueError(f"{number} is no finite number")
+    if not abs(number) < _LARGEST:
+        raise ValueError(f"{number} is no finite number, or too large")
     return number

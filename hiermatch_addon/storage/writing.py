@@ -99,15 +99,16 @@ def write(sides: Sequence[tuple[Side, Content]], prefix: str, *, show: bool = Tr
     Whatever was written with the same prefix before is replaced.  What is active in the lists of vertex groups and
     attributes stays so, except for the color attribute to be shown, if one is to `show`.
     """
-    plan = [one for side, content in sides for one in _by_part(side, content)]
-    before = [_Active.of(obj) for obj, _ in plan]
+    plan = [(*one, _Active.of(one[0])) for side, content in sides for one in _by_part(side, content)]
     with ExitStack() as undo:
-        for (obj, content), active in zip(plan, before, strict=True):
+        for obj, content, active in plan:
             undo.callback(active.restore, obj)
             undo.callback(_remove, obj, {name + _TEMPORARY: kind for name, kind in _kinds(content).items()})
             _add(obj, content)
+            undo.callback(_set_records, mesh_of(obj), {}, MARKER + _TEMPORARY)
+            _set_records(mesh_of(obj), _records_with(obj, content, prefix, active), MARKER + _TEMPORARY)
         undo.pop_all()
-    for (obj, content), active in zip(plan, before, strict=True):
+    for obj, content, active in plan:
         _replace(obj, content, prefix, active)
         (active.showing(content.shown) if show else active).restore(obj)
         mesh_of(obj).update()
@@ -215,13 +216,17 @@ def _add(obj: bpy.types.Object, content: Content) -> None:
 def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Active) -> None:
     """Remove what the prefix named before, let the new take its name, and record it."""
     mesh = mesh_of(obj)
-    records = _records(mesh)
-    before = active
-    if prefix in records:
-        before = active.without(records[prefix])
-        _remove(obj, records[prefix]["written"])
-    written = _kinds(content)
-    _take_names(obj, written)
+    records = _records_with(obj, content, prefix, active)
+    _remove(obj, _records(mesh).get(prefix, {"written": {}})["written"])
+    _take_names(obj, _kinds(content))
+    _set_records(mesh, {}, MARKER + _TEMPORARY)
+    _set_records(mesh, records)
+
+
+def _records_with(obj: bpy.types.Object, content: Content, prefix: str, active: _Active) -> dict[str, Any]:
+    """Return the records of an object's mesh when a content has been written with a prefix."""
+    records, written = _records(mesh_of(obj)), _kinds(content)
+    before = active.without(records[prefix]) if prefix in records else active
     if written or "part" in content.keep:
         records[prefix] = {
             "written": written,
@@ -231,7 +236,7 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
         }
     else:
         records.pop(prefix, None)
-    _set_records(mesh, records)
+    return records
 
 
 def _take_names(obj: bpy.types.Object, kinds: dict[str, str]) -> None:
@@ -257,12 +262,12 @@ def _records(mesh: bpy.types.Mesh) -> dict[str, Any]:
     return properties[MARKER].to_dict() if is_marked(mesh) else {}
 
 
-def _set_records(mesh: bpy.types.Mesh, records: dict[str, Any]) -> None:
+def _set_records(mesh: bpy.types.Mesh, records: dict[str, Any], name: str = MARKER) -> None:
     properties: Any = mesh
     if records:
-        properties[MARKER] = records
-    elif is_marked(mesh):
-        del properties[MARKER]
+        properties[name] = records
+    elif name in properties:
+        del properties[name]
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...common.errors import ObjectError
+from ...common.file_reading import parsed_json
 from ..command import UsageError
 from ..meshes import mesh_argument
 from ..options import option_names, quoted_names, to_arguments
@@ -259,7 +260,7 @@ def _table_rows(text: str) -> list[dict[str, str]]:
 
 def _json_rows(text: str) -> tuple[list[dict[str, str]], dict[str, str]]:
     """Return the pairs, and the options of all of them."""
-    plain = json.loads(text)
+    plain = parsed_json(text)
     if isinstance(plain, dict) and (unknown := sorted(set(plain) - {"options", "pairs"})):
         raise ValueError(f'it has {", ".join(unknown)} beside "options" and "pairs"')
     pairs = plain.get("pairs") if isinstance(plain, dict) else plain

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, cast
 import bpy
 
 from ...common.errors import ObjectError
-from ...common.file_writing import read_text, write_whole
+from ...common.file_reading import read_text
+from ...common.file_writing import write_whole
 from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.running import can_start

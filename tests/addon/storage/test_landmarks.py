@@ -401,6 +401,17 @@ class TestRegions:
         assert (state.exclude_source, state.exclude_target) == ("", "Tail")
 
 
+def with_landmark(**changes):
+    """Return what changes the first landmark in the text of a file."""
+
+    def change(text):
+        plain = json.loads(text)
+        plain["landmarks"][0] |= changes
+        return json.dumps(plain)
+
+    return change
+
+
 class TestFiles:
     @pytest.fixture
     def path(self, pair, tmp_path):
@@ -451,13 +462,26 @@ class TestFiles:
             (lambda text: text[:50], "no file of landmarks"),
             (lambda _text: '{"format": "else"}', "no file of landmarks"),
             (lambda text: json.dumps(json.loads(text) | {"version": 2}), "newer version"),
+            (lambda _text: "[" * 100_000, "no file of landmarks"),
+            (with_landmark(number=float("inf")), "no file of landmarks"),
+            (with_landmark(name="half a character: \ud800"), "no file of landmarks"),
+            (with_landmark(name="an end\0and more"), "no file of landmarks"),
+            (with_landmark(source={"vertex": float("inf"), "position": [0, 0, 0]}), "no file of landmarks"),
+            (with_landmark(source={"vertex": 100, "position": [0, 0, 0]}), "no file of landmarks"),  # as the other one
         ],
     )
     def test_files_that_cannot_be_read(self, pair, path, change, message):
-        assert pair
+        add_landmarks(*pair, [(100, 5), (50, 60)])
         path.write_text(change(path.read_text("utf8")), "utf8")
+        before = snapshot()
         with pytest.raises(RuntimeError, match=message):
             bpy.ops.hiermatch.load_landmarks(filepath=str(path))
+        assert snapshot() == before
+
+    def test_as_editors_on_windows_save_it(self, pair, path):
+        path.write_text(path.read_text("utf8"), "utf-8-sig")
+        bpy.ops.hiermatch.load_landmarks(filepath=str(path))
+        assert found(pair) == [(1, 3, 5), (2, 100, 110)]
 
     def test_no_file_and_nothing_to_save(self, pair, tmp_path):
         assert pair

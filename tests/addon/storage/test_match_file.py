@@ -192,6 +192,10 @@ def rewritten(path, change):
         lambda header, _: header["answers"][0]["quality"].update(confidence=float("nan")),
         lambda header, _: header.update(version=99),
         lambda header, _: header.update(format="something else"),
+        lambda header, _: header["answers"][0].update(name="n" * 64),
+        lambda header, _: header["answers"][0].update(name="the end\0and more"),
+        lambda header, _: header["answers"][0]["quality"].update(alternatives=3e9),
+        lambda header, _: header.update(notes=["half a character: \ud800"]),
     ],
 )
 def test_wrong_content_is_told(exported, change):
@@ -227,6 +231,31 @@ def test_objects_in_an_npz_are_never_made(exported, tmp_path):
             changed.writestr(name, pickled if name == "point_distortion.npy" else archive.read(name))
     with pytest.raises(ObjectError, match="damaged"):
         load_match(evil)
+
+
+def test_json_of_editors_on_windows_is_read(exported):
+    path = exported["json"]
+    path.write_text(path.read_text("utf8"), "utf-8-sig")
+    assert load_match(path).stored.key == load_match(exported["npz"]).stored.key
+
+
+@pytest.mark.parametrize("name", ["junk.npy", "point_distortion.npy", "header.npy"])
+def test_what_is_larger_than_it_can_be_is_not_unpacked(exported, monkeypatch, name):
+    """Such a file of 2 MB may hold 2 GB of zeros."""
+    unpacked = []
+    read = zipfile.ZipExtFile.read
+    monkeypatch.setattr(
+        zipfile.ZipExtFile, "read", lambda member, *size: unpacked.append(member.name) or read(member, *size)
+    )
+    with zipfile.ZipFile(exported["npz"]) as archive:
+        members = {member: archive.read(member) for member in archive.namelist()} | {name: bytes(1 << 25)}
+    with zipfile.ZipFile(exported["npz"], "w", zipfile.ZIP_DEFLATED) as changed:
+        for member, content in members.items():
+            changed.writestr(member, content)
+    unpacked.clear()
+    with pytest.raises(ObjectError, match="damaged"):
+        load_match(exported["npz"])
+    assert name not in unpacked
 
 
 def test_names_must_tell_the_kind_and_be_there(dense_pair, tmp_path):

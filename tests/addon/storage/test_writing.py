@@ -320,6 +320,18 @@ def test_a_failure_half_way_changes_nothing(pair, result, monkeypatch, step, ear
     assert [mesh_snapshot(obj) for obj in pair] == before
 
 
+@pytest.mark.parametrize("kept", [{"n" * 64: 1}, {"count": 1 << 40}, {"note": "half a character: \ud800"}])
+def test_what_cannot_be_kept_changes_nothing(pair, result, kept):
+    before = [mesh_snapshot(obj) for obj in pair]
+    prepared = contents(
+        result, "HM", SimpleNamespace(vertex_groups=True, match_colors=True, distortion=True, confidence=True)
+    )
+    prepared[1].keep.update(kept)
+    with pytest.raises((KeyError, OverflowError, ValueError)):
+        writing.write(list(zip(pair, prepared, strict=True)), "HM")
+    assert [mesh_snapshot(obj) for obj in pair] == before
+
+
 def result_mesh(obj):
     return mesh_io.read_mesh(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False)
 
