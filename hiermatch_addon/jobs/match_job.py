@@ -13,7 +13,6 @@ from ...engine import (
     MatchSettings,
     Progress,
     RiggedBody,
-    SettingsError,
     called_steps,
     densify_steps,
     distortion_after,
@@ -95,8 +94,7 @@ class JobOptions:
     confidence: bool = True
 
     def __post_init__(self) -> None:
-        if not self.prefix.strip():
-            raise SettingsError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+        writing.check_prefix(self.prefix)
 
 
 def job_options(options: MatchOptions) -> JobOptions:
@@ -105,7 +103,7 @@ def job_options(options: MatchOptions) -> JobOptions:
     Raises
     ------
     SettingsError
-        If they contradict each other, or the prefix is empty.
+        If they contradict each other, or the prefix is empty or too long.
     """
     return JobOptions(
         settings=match_settings(options),

@@ -19,6 +19,7 @@ from ..properties.summary import remember
 from ..scene.pair import find_pair
 from ..storage.match_exchange import apply_match
 from ..storage.match_file import load_match
+from ..storage.writing import LONGEST_PREFIX
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -61,7 +62,7 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
         name="Prefix",
         description="What the names of everything that is written start with",
         default="HM",
-        maxlen=32,
+        maxlen=LONGEST_PREFIX,
         options={"SKIP_SAVE"},
     )
 

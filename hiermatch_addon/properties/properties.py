@@ -15,6 +15,7 @@ from ..common.errors import ObjectError
 from ..scene.character import parts_of, side_of
 from ..scene.pair import named_side
 from ..storage.excluded_regions import region_names
+from ..storage.writing import LONGEST_PREFIX
 from .steering_lists import sync_lists
 from .summary import remember_common
 
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 __all__ = [
     "OPTION_NAMES",
     "OUTPUT_NAMES",
-    "PREFIX_LENGTH",
     "SETTING_NAMES",
     "MatchOptions",
     "copy_options",
@@ -35,9 +35,6 @@ __all__ = [
 ]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
-
-PREFIX_LENGTH = 32
-"""Longest prefix, in bytes: with the longest ending it stays below the 63 that Blender allows a name."""
 
 
 def to_identifier(word: str) -> str:
@@ -125,7 +122,7 @@ _OPTIONS: dict[str, Any] = {
         description="What the names of everything that is written start with. "
         "Another prefix keeps the results of other matches",
         default="HM",
-        maxlen=PREFIX_LENGTH,
+        maxlen=LONGEST_PREFIX,
     ),
     "write_vertex_groups": _props.BoolProperty(
         name="Vertex Groups",

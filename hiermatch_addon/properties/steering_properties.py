@@ -37,7 +37,7 @@ class HIERMATCH_PG_landmark(bpy.types.PropertyGroup):
     """A row of the list of landmarks."""
 
     label: _props.StringProperty(
-        name="Name", description="What the landmark is called; double-click to change it", maxlen=63, update=_rename
+        name="Name", description="What the landmark is called; double-click to change it", update=_rename
     )
     number: _props.IntProperty(name="Number", description="By which the landmark is known on both meshes")
     source: _props.IntProperty(name="Source Vertex", description="Vertex of the source")

@@ -83,8 +83,7 @@ def apply_match(context: bpy.types.Context, source: Side, target: Side, match: M
     check_pair(view_layer_of(context), source, target)
     if match.kind != "match":
         raise ObjectError("The file holds the symmetry of one mesh, not the match of two. Choose another file.")
-    if not prefix.strip():
-        raise ObjectError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+    writing.check_prefix(prefix)
     _check_fit(source, target, match)
     objects = (source, target)
     stored = replace(

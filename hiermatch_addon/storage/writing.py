@@ -15,6 +15,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ...engine import SettingsError
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..scene import mesh_io
@@ -29,9 +30,11 @@ if TYPE_CHECKING:
     from .contents import Content
 
 __all__ = [
+    "LONGEST_PREFIX",
     "MARKER",
     "change_kept",
     "check_names",
+    "check_prefix",
     "clear",
     "extend",
     "is_marked",
@@ -44,10 +47,30 @@ __all__ = [
 MARKER = "hiermatch"
 """Name of the custom property on a mesh that records what was written."""
 
+LONGEST_PREFIX = 32
+"""Bytes in a prefix, at most: with the longest ending a name stays below the 63 bytes that Blender allows it."""
+
 _TEMPORARY = " ~"
 """What the names of the new end with until the old is gone."""
 
 _GROUP, _ATTRIBUTE = "group", "attribute"
+
+
+def check_prefix(prefix: str) -> None:
+    """Make sure that names can start with a prefix.
+
+    Raises
+    ------
+    SettingsError
+        If it is empty or too long.
+    """
+    if not prefix.strip():
+        raise SettingsError("The Prefix is empty. Enter what the names of the vertex groups shall start with.")
+    if len(prefix.encode(errors="replace")) > LONGEST_PREFIX:
+        raise SettingsError(
+            f"The Prefix is too long. Enter one of at most {LONGEST_PREFIX} letters, or {LONGEST_PREFIX // 3} in "
+            "Chinese or Japanese."
+        )
 
 
 def check_names(side: Side, content: Content, prefix: str) -> None:

@@ -1456,6 +1456,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The Prefix is empty. Enter what the names of the vertex groups shall start with.": (
         "接頭辞が空です。頂点グループの名前の先頭に付ける文字列を入力してください。"
     ),
+    "The Prefix is too long. Enter one of at most {0} letters, or {1} in Chinese or Japanese.": (
+        "接頭辞が長すぎます。英数字で{0}文字まで、日本語や中国語で{1}文字までにしてください。"
+    ),
     "This file of landmarks is of a newer version of HierMatch. Update the extension.": (
         "このランドマークのファイルは新しいバージョンのHierMatchのものです。エクステンションを更新してください。"
     ),

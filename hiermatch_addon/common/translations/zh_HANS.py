@@ -1192,6 +1192,9 @@ MESSAGES: Final[dict[str, str]] = {
     "The Prefix is empty. Enter what the names of the vertex groups shall start with.": (
         "前缀为空。请输入顶点组名称的开头。"
     ),
+    "The Prefix is too long. Enter one of at most {0} letters, or {1} in Chinese or Japanese.": (
+        "前缀过长。请输入最多 {0} 个字母，或 {1} 个中文或日文字符。"
+    ),
     "This file of landmarks is of a newer version of HierMatch. Update the extension.": (
         "此地标文件来自更新版本的 HierMatch。请更新扩展。"
     ),

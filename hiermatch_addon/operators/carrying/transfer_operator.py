@@ -19,9 +19,9 @@ from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...panels.question import draw_question
 from ...properties.freshness import refresh
 from ...properties.panel_state import progress_of, state_of
-from ...properties.properties import PREFIX_LENGTH
 from ...properties.summary import pick_named, remember
 from ...scene.pair import lacking_meshes, name_of
+from ...storage.writing import LONGEST_PREFIX
 from ...transfers.retarget_properties import remember_transfer
 from ..pair_operator import pick_sides
 
@@ -68,7 +68,7 @@ class TransferOperator(JobOperator):
             name="Prefix",
             description="What the names start with that the match to use wrote; if empty, the one match that the "
             "objects carry",
-            maxlen=PREFIX_LENGTH,
+            maxlen=LONGEST_PREFIX,
             options={"SKIP_SAVE"},
         ),
         "refine": _props.BoolProperty(

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import HierMatchError, MatchSettings, Preview, Progress
+from hiermatch.engine import HierMatchError, MatchSettings, Preview, Progress, SettingsError
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.jobs.match_job import JobOptions, MatchJob
 from hiermatch.hiermatch_addon.jobs.shown_preview import preview
@@ -261,3 +261,12 @@ def test_the_cancel_button_says_that_nothing_runs():
 
 def test_errors_of_objects_are_errors_for_the_user():
     assert issubclass(ObjectError, HierMatchError)
+
+
+@pytest.mark.parametrize(
+    ("prefix", "said"), [("  ", "empty"), ("x" * 33, "too long"), ("日本語の長い接頭辞を付ける", "too long")]
+)
+def test_a_prefix_that_names_cannot_start_with_is_refused(prefix, said):
+    with pytest.raises(SettingsError, match=said):
+        JobOptions(MatchSettings(), prefix=prefix)
+    assert JobOptions(MatchSettings(), prefix="日本語の長い接頭辞").prefix

@@ -14,6 +14,7 @@ from hiermatch.engine import Progress
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.jobs import landmark_mirroring
 from hiermatch.hiermatch_addon.operators.steering import landmark_picking
+from hiermatch.hiermatch_addon.properties.steering_lists import sync_lists
 from hiermatch.hiermatch_addon.storage import landmark_layer
 from hiermatch.hiermatch_addon.storage.excluded_regions import excluded_vertices, region_names
 from hiermatch.hiermatch_addon.storage.landmark_layer import LANDMARKS, read_marks, write_marks
@@ -477,6 +478,19 @@ class TestFiles:
         with pytest.raises(RuntimeError, match=message):
             bpy.ops.hiermatch.load_landmarks(filepath=str(path))
         assert snapshot() == before
+
+    def test_a_name_may_be_long(self, pair, path):
+        """Blender cuts a property that has a greatest length in the middle of a letter, and then cannot read it."""
+        name = "a" + 40 * "目"
+        path.write_text(with_landmark(name=name)(path.read_text("utf8")), "utf8")
+        bpy.ops.hiermatch.load_landmarks(filepath=str(path))
+        assert find_landmarks(*pair)[0].name == name
+        sync_lists(bpy.context.scene)
+        steering = bpy.context.scene.hiermatch_steering
+        assert [row.label for row in steering.landmarks] == [name, "Landmark 2"]
+        revision = steering.revision
+        sync_lists(bpy.context.scene)
+        assert steering.revision == revision
 
     def test_as_editors_on_windows_save_it(self, pair, path):
         path.write_text(path.read_text("utf8"), "utf-8-sig")

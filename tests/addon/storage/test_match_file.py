@@ -6,10 +6,12 @@ from __future__ import annotations
 import json
 import zipfile
 from dataclasses import replace
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
+from hiermatch.engine import SettingsError
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.storage.match_exchange import apply_match, collect_match
 from hiermatch.hiermatch_addon.storage.match_file import load_match, save_match
@@ -287,6 +289,11 @@ def test_operators_export_and_import(dense_pair, tmp_path):
         bpy.ops.hiermatch.export_match(filepath=str(tmp_path / "a.txt"), source="Source", target="Target")
     with pytest.raises(RuntimeError, match="Prefix is empty"):
         bpy.ops.hiermatch.import_match(filepath=path, source="Source", target="Target", prefix="")
+    before = snapshot()
+    for prefix in ("x" * 33, "日本語" * 4):
+        with pytest.raises(SettingsError, match="Prefix is too long"):
+            apply_match(bpy.context, *dense_pair, load_match(Path(path)), prefix)
+    assert snapshot() == before
 
 
 def test_a_mesh_that_is_edited_through_another_object_is_refused(dense_pair, tmp_path):
