@@ -6,14 +6,16 @@ Blender's own types call these optional, because a context may lack them in plac
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
+
+from idprop.types import IDPropertyGroup
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import bpy
 
-__all__ = ["layout_of", "mesh_of", "open_collections", "view_layer_of", "window_manager_of"]
+__all__ = ["group_of", "layout_of", "mesh_of", "open_collections", "view_layer_of", "window_manager_of"]
 
 
 def view_layer_of(context: bpy.types.Context) -> bpy.types.ViewLayer:
@@ -45,3 +47,9 @@ def layout_of(owner: bpy.types.Panel | bpy.types.Menu | bpy.types.Operator) -> b
 def mesh_of(obj: bpy.types.Object) -> bpy.types.Mesh:
     """Return the mesh data of a mesh object."""
     return cast("bpy.types.Mesh", obj.data)
+
+
+def group_of(owner: Any, name: str) -> Any:  # noqa: ANN401 - mappings of whatever is in them
+    """Return a custom property that is a group of others; an empty one if there is none, or somebody else's."""
+    found = owner.get(name)
+    return found if isinstance(found, IDPropertyGroup) else {}

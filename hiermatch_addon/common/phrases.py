@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["counted", "listed"]
+__all__ = ["counted", "listed", "not_ours"]
 
 _THINGS: Final = {
     "action": ("1 action", "{0} actions"),
@@ -52,3 +52,8 @@ def listed(names: Sequence[str]) -> str:
     """Write names out, or the first of many."""
     shown, more = ", ".join(f'"{name}"' for name in names[:_SHOWN]), len(names) - _SHOWN
     return f"{shown} and {more} more" if more > 0 else shown
+
+
+def not_ours(owner: str, kind: str, name: str) -> str:
+    """Say that something, such as "an attribute" of an object, has a name that is needed."""
+    return f'"{owner}" already has {kind} called "{name}" that HierMatch did not write. Rename it.'

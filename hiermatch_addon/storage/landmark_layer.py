@@ -17,6 +17,8 @@ import bpy
 import numpy as np
 
 from ..common.access import mesh_of
+from ..common.errors import ObjectError
+from ..common.phrases import not_ours
 from ..scene.mesh_io import add_values, read_values
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LANDMARKS",
+    "check_layer",
     "has_landmarks",
     "numbers_in_file",
     "read_marks",
@@ -41,6 +44,21 @@ LANDMARKS = "HM Landmark"
 
 _LARGEST = 4096
 """No number of a landmark is larger: the square of a larger one is no exact number of single precision."""
+
+
+def check_layer(obj: bpy.types.Object) -> None:
+    """Make sure that nothing else has the name of the attribute.
+
+    Raises
+    ------
+    ObjectError
+        If a vertex group or another kind of attribute has it.
+    """
+    found: Any = mesh_of(obj).attributes.get(LANDMARKS)
+    if LANDMARKS in obj.vertex_groups:
+        raise ObjectError(not_ours(obj.name, "a vertex group", LANDMARKS))
+    if found is not None and (found.data_type, found.domain) != ("FLOAT_VECTOR", "POINT"):
+        raise ObjectError(not_ours(obj.name, "an attribute", LANDMARKS))
 
 
 def has_landmarks(mesh: bpy.types.Mesh) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ..common.access import mesh_of
+from ..common.access import group_of, mesh_of
 from ..scene.character import parts_of
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ def landmark_names(side: Side) -> dict[int, str]:
     """Return the names of a side's landmarks, by their numbers; those without a name are not there."""
     found: dict[int, str] = {}
     for part in parts_of(side):
-        mesh: Any = mesh_of(part)
-        found |= {int(number): str(name) for number, name in mesh.get(_NAMES, {}).items()}
+        names = group_of(mesh_of(part), _NAMES).items()
+        found |= {int(number): str(name) for number, name in names if number.isdecimal()}
     return found
 
 

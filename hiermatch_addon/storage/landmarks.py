@@ -251,6 +251,7 @@ def _check_writable(*sides: Side) -> None:
     for side in sides:
         for part in parts_of(side):
             check_writable(part)
+            landmark_layer.check_layer(part)
 
 
 def _check_number(source: Side, target: Side, number: int) -> None:

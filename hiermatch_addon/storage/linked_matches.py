@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from ..common.access import mesh_of
+from ..common.access import group_of, mesh_of
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, positions_of, topology_of, vertex_count
 from .match_file import MatchFile, packed_match, unpacked_match
@@ -97,7 +97,4 @@ def forget_linked(obj: bpy.types.Object, prefix: str) -> None:
 
 def _packed(obj: bpy.types.Object) -> dict[str, bytes]:
     """Return all that an object keeps."""
-    mesh: Any = mesh_of(obj)
-    found = mesh.get(_PROPERTY)
-    plain = {} if found is None else found.to_dict()
-    return {name: packed for name, packed in plain.items() if isinstance(packed, bytes)}
+    return {name: packed for name, packed in group_of(mesh_of(obj), _PROPERTY).items() if isinstance(packed, bytes)}

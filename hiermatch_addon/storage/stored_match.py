@@ -149,7 +149,7 @@ class Quality:
     @classmethod
     def from_plain(cls, plain: Mapping[str, Any]) -> Quality:
         """Undo `to_plain`."""
-        return cls(**{"margin": None, **plain, "alternatives": int(plain.get("alternatives", 0))})
+        return cls(**{"margin": None, **_known(cls, plain), "alternatives": int(plain.get("alternatives", 0))})
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,7 +217,7 @@ class Answer:
     @classmethod
     def from_plain(cls, name: str, plain: Mapping[str, Any], points: Mapping[str, Any]) -> Answer:
         """Undo `to_plain`."""
-        numbers = dict(plain)
+        numbers = _known(cls, plain)
         distortion = np.array(numbers.pop("point_distortion"), np.float64)
         quality = numbers.pop("quality", None)
         return cls(
@@ -343,11 +343,12 @@ class StoredMatch:
     @classmethod
     def from_plain(cls, source: Mapping[str, Any], target: Mapping[str, Any]) -> StoredMatch:
         """Undo `to_plain`."""
+        written = source["written"]
         return cls(
             names=(source["names"]["source"], source["names"]["target"]),
             topologies=(source["topology"], target["topology"]),
             positions=(source.get("positions", ""), target.get("positions", "")),
-            written=Written(**source["written"] | {"excluded": tuple(source["written"].get("excluded", ("", "")))}),
+            written=Written(**_known(Written, written) | {"excluded": tuple(written.get("excluded", ("", "")))}),
             source_points=CornerPoints.from_plain(source["points"]),
             answers=tuple(
                 Answer.from_plain(name, plain, target["points"][name]) for name, plain in source["answers"].items()
@@ -357,6 +358,12 @@ class StoredMatch:
             swapped=source.get("swapped", False),
             left_out=tuple(int(number) for number in source.get("left_out", "").split()),
         )
+
+
+def _known(cls: type[Any], plain: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a class has fields for: a later version may keep more."""
+    names = {field.name for field in fields(cls)}
+    return {name: value for name, value in plain.items() if name in names}
 
 
 def _exchanged(note: str) -> str:

@@ -16,8 +16,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ...engine import SettingsError
-from ..common.access import mesh_of
+from ..common.access import group_of, mesh_of
 from ..common.errors import ObjectError
+from ..common.phrases import not_ours
 from ..scene import mesh_io
 from ..scene.character import parts_of, vertex_ranges
 
@@ -40,6 +41,7 @@ __all__ = [
     "is_marked",
     "kept",
     "prefixes",
+    "records_of",
     "take_away",
     "write",
 ]
@@ -79,7 +81,8 @@ def check_names(side: Side, content: Content, prefix: str) -> None:
     Raises
     ------
     ObjectError
-        If a vertex group or attribute of such a name exists that no match with this prefix wrote.
+        If a vertex group or attribute of such a name exists that no match with this prefix wrote, or a custom property
+        of the records' name that is somebody else's.
     """
     for obj, of_part in _by_part(side, content):
         _check_names(obj, of_part, prefix)
@@ -98,7 +101,11 @@ def _by_part(side: Side, content: Content) -> list[tuple[bpy.types.Object, Conte
 
 def _check_names(obj: bpy.types.Object, content: Content, prefix: str) -> None:
     mesh = mesh_of(obj)
-    writers = {name: writer for writer, record in _records(mesh).items() for name in record["written"]}
+    properties: Any = mesh
+    ours = records_of(mesh)
+    if MARKER in properties and not (ours and len(ours) == len(properties[MARKER])):
+        raise ObjectError(not_ours(obj.name, "a custom property", MARKER))
+    writers = {name: writer for writer, record in ours.items() for name in record["written"]}
     present = dict.fromkeys(obj.vertex_groups.keys(), "a vertex group")
     present |= dict.fromkeys(mesh.attributes.keys(), "an attribute")
     wanted = _kinds(content)
@@ -177,23 +184,18 @@ def take_away(side: Side, names: Iterable[str], prefix: str) -> None:
 
 def is_marked(mesh: bpy.types.Mesh) -> bool:
     """Return whether something was written on a mesh."""
-    properties: Any = mesh
-    return MARKER in properties
+    return bool(records_of(mesh))
 
 
 def prefixes(obj: bpy.types.Object) -> tuple[str, ...]:
     """Return the prefixes under which something was written on an object, oldest first."""
-    properties: Any = mesh_of(obj)
-    return tuple(properties[MARKER].keys()) if is_marked(mesh_of(obj)) else ()
+    return tuple(records_of(mesh_of(obj)))
 
 
 def kept(obj: bpy.types.Object, prefix: str) -> dict[str, Any]:
     """Return the plain data that was kept on an object with what was written with a prefix; empty if there is none."""
-    properties: Any = mesh_of(obj)
-    if not is_marked(mesh_of(obj)) or prefix not in properties[MARKER]:
-        return {}
-    found = properties[MARKER][prefix].get("kept")
-    return {} if found is None else found.to_dict()
+    found = group_of(records_of(mesh_of(obj)).get(prefix, {}), "kept")
+    return found.to_dict() if found else {}
 
 
 def clear(obj: bpy.types.Object, prefix: str) -> bool:
@@ -279,10 +281,15 @@ def _remove(obj: bpy.types.Object, kinds: dict[str, str]) -> None:
             owner.remove(found)
 
 
+def records_of(mesh: bpy.types.Mesh) -> dict[str, Any]:
+    """Return what was written, per prefix, oldest first, as Blender keeps it; nothing of what others have put there."""
+    found = group_of(mesh, MARKER).items()
+    return {prefix: record for prefix, record in found if hasattr(record, "keys") and "written" in record}
+
+
 def _records(mesh: bpy.types.Mesh) -> dict[str, Any]:
-    """Return what was written, per prefix, oldest first."""
-    properties: Any = mesh
-    return properties[MARKER].to_dict() if is_marked(mesh) else {}
+    """Return the same as plain data."""
+    return {prefix: record.to_dict() for prefix, record in records_of(mesh).items()}
 
 
 def _set_records(mesh: bpy.types.Mesh, records: dict[str, Any], name: str = MARKER) -> None:

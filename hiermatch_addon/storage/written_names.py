@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ..common.access import mesh_of
 from . import writing
@@ -17,7 +17,5 @@ __all__ = ["written_names"]
 
 def written_names(obj: bpy.types.Object) -> set[str]:
     """Return the names of all that matches wrote on an object and recorded there, and of what keeps its landmarks."""
-    mesh: Any = mesh_of(obj)
-    if not writing.is_marked(mesh):
-        return {LANDMARKS}
-    return {LANDMARKS} | {name for record in mesh[writing.MARKER].to_dict().values() for name in record["written"]}
+    records = writing.records_of(mesh_of(obj)).values()
+    return {LANDMARKS} | {name for record in records for name in record["written"]}

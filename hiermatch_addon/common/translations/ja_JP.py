@@ -2282,6 +2282,9 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」には「{1}」というカラーがありません。出力で{2}をオンにし、信頼度には密なマップもオンにして、"
         "もう一度マッチングしてください。"
     ),
+    '"{0}" already has {1} called "{2}" that HierMatch did not write. Rename it.': (
+        "「{0}」には、HierMatchが書き込んだものではない{1}「{2}」があります。名前を変えてください。"
+    ),
     '"{0}" already has {1} called "{2}" that HierMatch did not write. Rename it, or choose another Prefix.': (
         "「{0}」には、HierMatchが書き込んだものではない{1}「{2}」があります。名前を変えるか、別の接頭辞を選ん"
         "でください。"
@@ -2294,6 +2297,7 @@ MESSAGES: Final[dict[str, str]] = {
         "してください。"
     ),
     "a vertex group": "頂点グループ",
+    "a custom property": "カスタムプロパティ",
     "an attribute": "属性",
     (
         '"{0}" has no vertex group, boolean attribute, material or face set called "{1}", which is to be left out. '

@@ -1874,6 +1874,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" carries no colors called "{1}". Match again with {2} on under Output, and for confidence with '
         "Dense Map on."
     ): "“{0}”没有名为“{1}”的颜色。请在输出下启用{2}（置信度还需启用稠密映射）后重新匹配。",
+    '"{0}" already has {1} called "{2}" that HierMatch did not write. Rename it.': (
+        "“{0}”已有并非由 HierMatch 写入的{1}“{2}”。请将其重命名。"
+    ),
     '"{0}" already has {1} called "{2}" that HierMatch did not write. Rename it, or choose another Prefix.': (
         "“{0}”已有并非由 HierMatch 写入的{1}“{2}”。请将其重命名，或选择另一个前缀。"
     ),
@@ -1882,6 +1885,7 @@ MESSAGES: Final[dict[str, str]] = {
         "Prefix, or clear that match."
     ): "“{0}”的{1}“{2}”属于前缀为“{3}”的匹配。请选择另一个前缀，或清除那个匹配。",
     "a vertex group": "顶点组",
+    "a custom property": "自定义属性",
     "an attribute": "属性",
     (
         '"{0}" has no vertex group, boolean attribute, material or face set called "{1}", which is to be left out. '

@@ -23,7 +23,7 @@ from hiermatch.hiermatch_addon.storage.written_names import written_names
 from mathutils import Matrix, Vector
 from scipy.spatial import cKDTree
 
-from tests.addon.scenes import QUICK, add_pair, add_symmetric_pair, edit_twin, snapshot, weights_of
+from tests.addon.scenes import QUICK, add_pair, add_symmetric_pair, edit_twin, mesh_snapshot, snapshot, weights_of
 
 
 @pytest.fixture
@@ -324,6 +324,22 @@ class TestMatching:
         add_landmarks(*pair, [(30, 200)])
         bpy.ops.hiermatch.match(use_landmarks=False, **QUICK)
         assert [weights_of(obj) for obj in pair] == before
+
+    @pytest.mark.parametrize("kind", ["group", "attribute"])
+    @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])
+    def test_what_the_user_called_so_is_left_alone(self, pair, kind, mode):
+        if kind == "group":
+            pair[1].vertex_groups.new(name=LANDMARKS)
+        else:
+            pair[1].data.attributes.new(LANDMARKS, "FLOAT", "POINT")
+        before = [mesh_snapshot(obj) for obj in pair]
+        if mode == "EDIT":
+            edit(*pair)
+        with pytest.raises(ObjectError, match=r'called "HM Landmark" that HierMatch did not write\. Rename it'):
+            add_landmarks(*pair, [(3, 5)])
+        if mode == "EDIT":
+            bpy.ops.object.mode_set(mode="OBJECT")
+        assert [mesh_snapshot(obj) for obj in pair] == before
 
     def test_too_many(self, pair):
         add_landmarks(*pair, [(vertex, vertex) for vertex in range(10, 23)])

@@ -11,6 +11,8 @@ import pytest
 from hiermatch.engine import MatchQuality, SurfacePoints, TriangleMesh
 from hiermatch.engine.dense.quality import overlap_sentence
 from hiermatch.hiermatch_addon.scene.mesh_io import topology
+from hiermatch.hiermatch_addon.storage.landmark_names import landmark_names
+from hiermatch.hiermatch_addon.storage.linked_matches import linked_prefixes
 from hiermatch.hiermatch_addon.storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, Written
 
 from tests.addon.scenes import add_blob
@@ -171,3 +173,22 @@ def test_what_is_told_of_a_swapped_match_is_told_of_the_same_mesh():
 def test_names_in_notes_stay_as_they_are():
     notes = ('Hide what "my source mesh" has not, as the source has.',)
     assert stored(notes=notes, swapped=True).told[1] == ('Hide what "my source mesh" has not, as the target has.',)
+
+
+def test_what_a_later_version_keeps_beside_is_left_aside():
+    match = stored()
+    source, target = match.to_plain()
+    for plain in (source, target, source["written"], *source["answers"].values()):
+        plain["later"] = 1.0
+    for answer in source["answers"].values():
+        answer["quality"]["later"] = 1.0
+    assert same(StoredMatch.from_plain(source, target), match)
+
+
+def test_properties_of_others_are_no_names_and_no_matches():
+    blob = add_blob("Blob")
+    for name in ("HM Landmark Names", "hiermatch_linked"):
+        for value in (1, "mine", {"a": {"b": 1}}):
+            blob.data[name] = value
+            assert landmark_names(blob) == {}
+            assert linked_prefixes(blob) == ()

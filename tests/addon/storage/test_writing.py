@@ -15,6 +15,7 @@ from hiermatch.hiermatch_addon.storage import writing
 from hiermatch.hiermatch_addon.storage.contents import UNREACHED, Content, contents
 from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
 from hiermatch.hiermatch_addon.storage.views import colors
+from hiermatch.hiermatch_addon.storage.written_names import written_names
 
 from tests.addon.scenes import add_pair, made_up_maps, made_up_result, mesh_snapshot, values_of, weights_of
 
@@ -289,6 +290,20 @@ def test_names_of_a_match_with_another_prefix_are_not_taken(pair, result):
         with pytest.raises(ObjectError, match=r'belongs to the match with the Prefix "HM"\. Choose another Prefix'):
             writing.check_names(pair[1], content, "HM Distortion")
         writing.check_names(pair[1], content, "HM")
+    assert [mesh_snapshot(obj) for obj in pair] == before
+
+
+@pytest.mark.parametrize("own", [1, "mine", {"HM": 1}, {"HM": {"else": 1}}])
+def test_a_property_of_the_users_is_none_of_ours(pair, result, own):
+    pair[1].data["hiermatch"] = own
+    before = [mesh_snapshot(obj) for obj in pair]
+    assert not writing.is_marked(pair[1].data)
+    assert writing.prefixes(pair[1]) == ()
+    assert writing.kept(pair[1], "HM") == {}
+    assert not writing.clear(pair[1], "HM")
+    assert "HM" not in written_names(pair[1])
+    with pytest.raises(ObjectError, match='a custom property called "hiermatch" that HierMatch did not write'):
+        write(pair, result)
     assert [mesh_snapshot(obj) for obj in pair] == before
 
 
