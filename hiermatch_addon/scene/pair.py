@@ -210,12 +210,12 @@ def _grouped(
     groups: list[tuple[set[bpy.types.ID], str, list[bpy.types.Object]]] = []
     for obj in meshes:
         holders, name = _holders(context, obj, meshes, own)
-        met = next((group for group in groups if not group[0].isdisjoint(holders)), None)
-        if met is None:
-            groups.append((holders, name, [obj]))
-        else:
-            met[0].update(holders)
-            met[2].append(obj)
+        met = [group for group in groups if not group[0].isdisjoint(holders)]
+        for also, _, _ in met:
+            holders |= also
+        together = [part for _, _, parts in met for part in parts]
+        groups = [group for group in groups if group not in met]
+        groups.append((holders, met[0][1] if met else name, [*together, obj]))
     return [joined(name, found) for _, name, found in groups]
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import bpy
 import numpy as np
 import pytest
@@ -144,6 +146,21 @@ class TestSelection:
         assert {one.name for one in targets} == {"Other Rig", "Third Rig", "Bare"}
         assert not left_out
         assert armature not in source
+
+    @pytest.mark.parametrize("order", list(permutations(("One", "Two", "Linking"))))
+    def test_what_shares_armatures_by_way_of_another_is_one_target(self, order):
+        """Whichever is met first: the meshes are gone through by name."""
+        rigs = [bpy.data.objects.new(name, bpy.data.armatures.new(name)) for name in ("Body Rig", "Face Rig")]
+        moved_by = {"One": rigs[:1], "Two": rigs[1:], "Linking": rigs}
+        for rig in rigs:
+            bpy.context.collection.objects.link(rig)
+        blobs = [add_blob(f"{number} {name}") for number, name in enumerate(order)]
+        for blob, name in zip(blobs, order, strict=True):
+            for rig in moved_by[name]:
+                blob.modifiers.new("Armature", "ARMATURE").object = rig
+        source = add_blob("Source")
+        select(source, *blobs, active=source)
+        assert [parts_of(target) for target in selected_targets(bpy.context, source)[0]] == [tuple(blobs)]
 
     def test_armatures_alone_mean_all_that_they_move(self, cut):
         parts, armature = cut
