@@ -6,13 +6,15 @@ from __future__ import annotations
 import errno
 import os
 from contextlib import contextmanager
+from os.path import realpath
+from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import uuid4
 
 from .errors import ObjectError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 __all__ = ["beside", "check_place", "write_whole"]
 
@@ -60,18 +62,21 @@ def write_whole(path: Path, content: bytes) -> None:
 def beside(path: Path) -> Iterator[Path]:
     """Lend a name beside a file, of the same suffix; what is written there takes the file's place at last.
 
+    Of a symbolic link that is the file that it leads to.
+
     Raises
     ------
     ObjectError
         If it cannot be written.
     """
     check_place(path)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    place = Path(realpath(path))
+    temporary = place.with_name(f".{uuid4().hex}{path.suffix}")  # without the stem, which may be as long as can be
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        place.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield temporary
-            temporary.replace(path)
+            temporary.replace(place)
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as error:
