@@ -149,7 +149,8 @@ class SurfaceSampler:
             for first, block in self._solver.distances_in_blocks(new):
                 rows[known + first : known + first + len(block)] = block / scale
                 yield Progress((first + len(block)) / total, "Measuring distances")
-            self.taken = SurfaceSamples(self._mesh, np.array(self._farthest.samples[:measured]), rows, measured)
+            if measured > len(self.taken):  # more may have been taken between two steps
+                self.taken = SurfaceSamples(self._mesh, np.array(self._farthest.samples[:measured]), rows, measured)
         for start in range(0, len(followed), _FOLLOWED_TOGETHER):
             part = followed[start : start + _FOLLOWED_TOGETHER]
             lengths = self._solver.path_lengths([self._farthest.samples[number] for number in part]) / scale

@@ -36,6 +36,18 @@ def test_what_was_taken_does_not_change_while_more_is(sampler):
         before.measured = 3
 
 
+def test_of_two_that_take_samples_in_turn_neither_takes_any_from_the_other():
+    shape, other = Shape(MESH), Shape(MESH)
+    run(other.sample_steps(40))
+    few, many = shape.sample_steps(12), shape.sample_steps(40)
+    next(few), next(few)  # has measured its own, and not kept them yet
+    for steps in many, few:
+        for _ in steps:
+            pass
+    assert not shape.lacks(40)
+    np.testing.assert_array_equal(shape.limited(40).samples.rows, other.samples.rows)
+
+
 def test_cells_cover_the_surface_and_distances_are_those_of_the_rows(sampler):
     taken = sampler.taken
     assert taken.cell_areas.sum() == pytest.approx(1)
