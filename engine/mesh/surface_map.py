@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..runtime.arrays import Bools, Floats, Ints, slices
 from ..runtime.errors import MatchError
 from .closest_points import ClosestPoints
-from .surface_points import SurfacePoints
+from .surface_points import SurfacePoints, at_corners
 from .triangle_mesh import TriangleMesh
 
 _CHUNK = 100_000
@@ -181,9 +181,9 @@ class SurfaceMap:
         carried = np.empty((len(self), flat.shape[1]), np.result_type(flat, np.float64))
         for part in slices(len(self), _CHUNK):
             weights, corners = self.barycentric[part], self.corners[part]
-            carried[part] = weights[:, :1] * flat[corners[:, 0]]
+            carried[part] = weights[:, :1] * at_corners(flat, corners[:, 0], weights[:, 0])
             for corner in (1, 2):
-                carried[part] += weights[:, corner, None] * flat[corners[:, corner]]
+                carried[part] += weights[:, corner, None] * at_corners(flat, corners[:, corner], weights[:, corner])
         return carried.reshape(len(self), *array.shape[1:])
 
     def then(self, other: SurfaceMap, image: TriangleMesh, search: ClosestPoints | None = None) -> SurfaceMap:

@@ -123,7 +123,18 @@ class SurfacePoints:
         (k, ...) array of float
             Values at the points.
         """
-        return np.einsum("kc,kc...->k...", self.barycentric, values[self.corners])
+        return np.einsum("kc,kc...->k...", self.barycentric, at_corners(values, self.corners, self.barycentric))
+
+
+def at_corners(values: Floats, corners: Ints, weights: Floats) -> Floats:
+    """Take values (n, ...) at corners (k, c), or (k,), but nothing where their weights, of that shape, are zero.
+
+    There infinite values and NaN do not matter.
+    """
+    taken = values[corners]
+    if not np.isfinite(taken).all():
+        taken[weights == 0] = 0
+    return taken
 
 
 def interpolation_matrix(barycentric: Floats, corners: Ints, count: int) -> csr_array:

@@ -85,6 +85,23 @@ def test_numbers_that_name_something_are_taken_from_the_nearest_vertex(fine, coa
     np.testing.assert_array_equal(mapped.transfer(names), names[mapped.nearest_vertices])
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("shape", [(), (2,)])
+def test_what_is_not_finite_is_carried_to_where_it_has_a_weight_and_nowhere_else(fine, coarse, shape):
+    values = np.ones((fine.vertex_count, *shape))
+    values[5], values[7] = np.inf, np.nan
+    same = SurfaceMap.identity(fine)
+    np.testing.assert_array_equal(same.transfer(values), values)
+    np.testing.assert_array_equal(same.points.interpolate(values), values)
+    mapped = onto(coarse, fine)
+    touched = ((mapped.corners == 5) & (mapped.barycentric > 0)).any(axis=1)
+    nan = ((mapped.corners == 7) & (mapped.barycentric > 0)).any(axis=1)
+    assert touched.any()
+    expected = np.where(nan, np.nan, np.where(touched, np.inf, 1.0))
+    for carried in (mapped.transfer(values), mapped.points.interpolate(values)):
+        np.testing.assert_allclose(carried.T, np.broadcast_to(expected, carried.T.shape))
+
+
 def test_single_precision_and_lists_become_double_precision(flat, other_flat):
     mapped = onto(flat, other_flat)
     single = mapped.transfer(other_flat.vertices[:, 0].astype(np.float32))
