@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ctypes
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, wraps
@@ -55,8 +56,9 @@ def thread_counts() -> list[int]:
 
 
 class _State:
-    """How often one thread is wanted at the moment, and how many there were before."""
+    """How often one thread is wanted at the moment, and how many there were before; the lock guards both."""
 
+    lock = threading.Lock()
     depth = 0
     before: tuple[int, ...] = ()
 
@@ -69,18 +71,20 @@ def one_thread() -> Iterator[None]:
     hardly make it faster.  And as the order of sums depends on their number, two processes would not come to the same
     result to the last bit, nor two machines.
     """
-    if _State.depth == 0:
-        _State.before = tuple(thread_counts())
-        for library in libraries():
-            library.limit(1)
-    _State.depth += 1
+    with _State.lock:
+        if _State.depth == 0:
+            _State.before = tuple(thread_counts())
+            for library in libraries():
+                library.limit(1)
+        _State.depth += 1
     try:
         yield
     finally:
-        _State.depth -= 1
-        if _State.depth == 0:
-            for library, count in zip(libraries(), _State.before, strict=True):
-                library.limit(count)
+        with _State.lock:
+            _State.depth -= 1
+            if _State.depth == 0:
+                for library, count in zip(libraries(), _State.before, strict=True):
+                    library.limit(count)
 
 
 def on_one_thread(function: Callable[Given, Steps[Result]]) -> Callable[Given, Steps[Result]]:

@@ -47,7 +47,8 @@ PROCESSES_MAY = {
     "subprocess",
     "sys",
 }
-PROCESSES_MAY |= {"traceback", "weakref"}
+PROCESSES_MAY |= {"threading", "traceback", "weakref"}
+LOCKED = ROOT / "engine" / "runtime" / "blas_threads.py"
 
 
 def imported(path):
@@ -91,27 +92,33 @@ def test_no_threads_no_print_and_no_search_path(path):
     forbidden = {"threading", "_thread", "concurrent", "multiprocessing", "asyncio", "sys"}
     if "command_line" in path.parts or path in PROCESSES:
         forbidden -= {"sys"}  # a command has arguments, streams and an interpreter to start again; see the next tests
+    if path == LOCKED:
+        forbidden -= {"threading"}  # it has a lock for the threads of others; see below
     assert not forbidden & set(imported(path))
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
     assert not {"print", "eval", "exec", "open", "__import__"} & called
 
 
-def used_of_sys(path):
+def used_of(module, path):
     return {
         node.attr
         for node in ast.walk(ast.parse(path.read_text(encoding="utf8")))
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "sys"
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == module
     }
+
+
+def test_a_lock_starts_no_thread():
+    assert used_of("threading", LOCKED) == {"Lock"}
 
 
 @pytest.mark.parametrize("path", [path for path in ADDON if "command_line" in path.parts], ids=name)
 def test_the_command_line_leaves_the_interpreter_alone(path):
-    assert used_of_sys(path) <= {"argv", "executable", "stdout", "stderr"}
+    assert used_of("sys", path) <= {"argv", "executable", "stdout", "stderr"}
 
 
 @pytest.mark.parametrize("path", sorted(PROCESSES), ids=name)
 def test_other_processes_are_started_by_the_interpreter_which_is_left_alone(path):
-    assert used_of_sys(path) <= {"executable"}
+    assert used_of("sys", path) <= {"executable"}
 
 
 @pytest.mark.parametrize(

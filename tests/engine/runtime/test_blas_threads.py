@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import threading
+import time
+
 import pytest
 
 import engine
@@ -56,6 +59,28 @@ def test_contexts_may_end_in_any_order(two_threads):
     assert thread_counts() == [1, 1]
     second.__exit__(None, None, None)
     assert thread_counts() == two_threads
+
+
+def test_two_that_begin_at_the_same_time_leave_all_threads(monkeypatch):
+    counts, begun = [2], threading.Event()
+
+    def limit(count):
+        counts[0] = count
+        begun.set()
+        time.sleep(0.05)  # which is when the other one begins
+
+    monkeypatch.setattr(blas_threads, "libraries", lambda: (blas_threads.Library(lambda: counts[0], limit),))
+
+    def wanting():
+        with one_thread():
+            assert counts == [1]
+
+    other = threading.Thread(target=wanting)
+    other.start()
+    begun.wait()
+    wanting()
+    other.join()
+    assert counts == [2]
 
 
 def test_without_a_copy_nothing_is_changed(monkeypatch):
