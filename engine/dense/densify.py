@@ -103,10 +103,11 @@ def densify_steps(
             f"{len(source_points)} points of the source and {len(target_points)} of the target cannot be extended to a "
             f"map: give as many of one as of the other, {_FEWEST} at least."
         )
+    masks = left_out_of((source, target), excluded)
     call_helpers()
     first = _piece_of(source, "source", maps[0], source_points)
     covered = first, _piece_of(target, "target", maps[1], target_points)
-    ends = zip((source, target), ("source", "target"), excluded, covered, (source_points, target_points), strict=True)
+    ends = zip((source, target), ("source", "target"), masks, covered, (source_points, target_points), strict=True)
     x, y = yield from within(in_turn(_shape_steps(*end) for end in ends), 0.0, 0.2)
     x, y = yield from within(evened_steps(x, y), 0.2, 0.2)
     x, y = finer_shapes(x, y)
@@ -145,12 +146,11 @@ def _piece_of(
 def _shape_steps(
     surface: TriangleMesh | Shape,
     name: str,
-    excluded: ArrayLike | None,
+    left_out: Bools | None,
     covered: Bools | None,
     points: SurfacePoints,
 ) -> Steps[Shape]:
     """Prepare what is covered and not excluded of a mesh, so that points lie on it, or return a shape as it is."""
-    left_out = left_out_of(surface, name, excluded)
     if isinstance(surface, Shape):
         return surface
     if covered is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import dijkstra
 
-from ..mesh.triangle_mesh import TriangleMesh
+from ..mesh.triangle_mesh import TriangleMesh, check_mesh
 from ..runtime.arrays import Bools, Floats, Ints, ranges
 from ..runtime.errors import MeshError
 from .corner_tables import corner_tables
@@ -97,6 +97,7 @@ class GeodesicSolver:
     """See `parallel_map.shared_steps`."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
+        check_mesh(mesh)
         tables = corner_tables(mesh)
         self._vertex_count = mesh.vertex_count
         self._unit = tables.unit

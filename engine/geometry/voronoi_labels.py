@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse.csgraph import dijkstra
 
-from ..mesh.triangle_mesh import TriangleMesh
+from ..mesh.triangle_mesh import TriangleMesh, check_mesh
 from ..runtime.arrays import Ints
 from .corner_tables import corner_tables
 from .geodesics import checked_sources
@@ -37,8 +37,9 @@ def nearest_regions(mesh: TriangleMesh, vertices: ArrayLike) -> Ints:
     Raises
     ------
     MeshError
-        If there is no such vertex.
+        If there is no such vertex, or the surface is none.
     """
+    check_mesh(mesh)
     places = checked_sources(vertices, mesh.vertex_count)
     regions = np.full(mesh.vertex_count, NO_REGION)
     if not len(places):

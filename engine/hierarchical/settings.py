@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any, cast
+from typing import Any, Self, cast
 
 import numpy as np
 
@@ -45,12 +45,30 @@ class CheckedSettings:
         for own in fields(self):
             value, about = getattr(self, own.name), own.metadata
             if "choices" in about:
-                if value not in list(about["choices"]):
+                if not isinstance(value, str) or value not in about["choices"]:
                     raise SettingsError(f"{about['label']} is {value!r}, but must be one of {list(about['choices'])}.")
             elif "minimum" in about:
                 _check_number(value, about, whole=isinstance(own.default, int))
             elif "label" in about and not isinstance(value, (bool, np.bool_)):
                 raise SettingsError(f"{about['label']} is {value!r}, but must be True or False.")
+
+    @classmethod
+    def checked(cls, settings: Self | None) -> Self:
+        """Return settings as they were given, or the defaults for None.
+
+        Raises
+        ------
+        SettingsError
+            If they are others, or a dictionary.
+        """
+        if settings is None:
+            return cls()
+        if not isinstance(settings, cls):
+            raise SettingsError(
+                f"The settings are of the type {type(settings).__name__}. "
+                f"Make settings of them first: {cls.__name__}(**settings)."
+            )
+        return settings
 
 
 def _check_number(value: object, about: Mapping[str, Any], *, whole: bool) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, least_likeness
@@ -13,12 +12,13 @@ from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools
 from ..runtime.background import can_go_beside
-from ..runtime.errors import MatchError, SettingsError
+from ..runtime.errors import MatchError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, at_once, within
 from ..runtime.worker import call_helpers
 from ..shapes.borders import has_border, longest_border
 from ..shapes.known_shapes import KnownShapes
+from ..shapes.landmarks import vertex_pairs
 from ..shapes.prepared_surface import PreparedSurface, prepared_steps
 from ..shapes.shape import Shape, check_surface, left_out_of
 from .alike_match import alike_match_steps
@@ -36,7 +36,7 @@ from .partial_match import (
     piece_with_partner,
 )
 from .result import MatchResult
-from .shape_matching import MatchTask, matched_steps
+from .shape_matching import MatchTask, fitting_settings, matched_steps
 from .standing_match import standing_match_steps
 
 _Unprepared = tuple[TriangleMesh, str, Bools | None]
@@ -96,7 +96,7 @@ def match_steps(
         The surfaces X and Y.  Position, orientation, size, units, triangulation and vertex order do not matter.
         Pass a `Shape` to keep what is computed for it from one match to the next.
     settings : MatchSettings, optional
-        How many points, and how hard to search.
+        How many points, and how hard to search.  Of surfaces with fewer vertices, no more points are matched.
     landmarks : (k, 2) array_like of int, optional
         Pairs of a vertex of the source and one of the target that are known to correspond: at most as many as there are
         points, all different, on the main parts of the meshes.  They are the first points of the result, and exact
@@ -117,10 +117,10 @@ def match_steps(
     Raises
     ------
     MatchError
-        If a surface has too few vertices for the points that were asked for, landmarks cannot be used, or vertices are
-        excluded from a `Shape`, which was made with or without them.
+        If a surface has fewer vertices than coarse points, or without a dense map than points, landmarks cannot be
+        used, or vertices are excluded from a `Shape`, which was made with or without them.
     MeshError, SettingsError
-        If a surface is none, as its arrays, or the settings are a dictionary.
+        If a surface is none, as its arrays, or the settings are others, as a dictionary.
 
     References
     ----------
@@ -128,16 +128,16 @@ def match_steps(
     """
     for surface, name in ((source, "source"), (target, "target")):
         check_surface(surface, name)
-    if isinstance(settings, dict):
-        raise SettingsError("The settings are a dictionary. Make settings of it first: MatchSettings(**settings).")
-    settings = settings or MatchSettings()
-    landmarks = None if landmarks is None or not np.size(landmarks) else landmarks
-    task = MatchTask(settings, landmarks, assumed=assumed)
+    settings, pairs = MatchSettings.checked(settings), vertex_pairs(landmarks)
+    task = MatchTask(settings, pairs if len(pairs) else None, assumed=assumed)
+    masks = left_out_of((source, target), excluded)
     call_helpers()
-    x, y = yield from within(_shapes_steps((source, target), excluded, known), 0.0, 0.06)
+    x, y = yield from within(_shapes_steps((source, target), masks, known), 0.0, 0.06)
+    if not has_limbs(x, y):  # which are more when they are joined
+        fitting_settings(x, y, settings)
     if not settings.dense:
         result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
-    elif landmarks is None and (longest_border(x) > _CUT or longest_border(y) > _CUT) and not has_limbs(x, y):
+    elif task.landmarks is None and (longest_border(x) > _CUT or longest_border(y) > _CUT) and not has_limbs(x, y):
         result = yield from within(_overlapping_steps(x, y, task), 0.06, 1.0)
     else:
         end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
@@ -242,14 +242,13 @@ def _worth(overlap: OverlapMatch) -> float:
 
 def _shapes_steps(
     surfaces: tuple[TriangleMesh | Shape, TriangleMesh | Shape],
-    excluded: tuple[ArrayLike | None, ArrayLike | None],
+    masks: list[Bools | None],
     known: KnownShapes | None,
 ) -> Steps[list[Shape]]:
     """Prepare meshes that are not known; shapes stay as they are."""
     shapes: list[Shape | None] = []
     items: list[_Unprepared] = []
-    for surface, name, left_out in zip(surfaces, ("source", "target"), excluded, strict=True):
-        mask = left_out_of(surface, name, left_out)
+    for surface, name, mask in zip(surfaces, ("source", "target"), masks, strict=True):
         if isinstance(surface, Shape):
             shapes.append(surface)
             continue

@@ -14,7 +14,7 @@ from ..dense.quality import DenseMatch
 from ..mesh.reflection import reflected_mesh
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
-from ..mesh.triangle_mesh import TriangleMesh
+from ..mesh.triangle_mesh import TriangleMesh, check_mesh
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
 from ..registration.registration import FINE, Stage, register_steps, restarted_steps
@@ -23,9 +23,9 @@ from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, at_once, run, within
 from ..shapes.enclosing_surface import joined_shapes_steps, with_limbs_steps
-from ..shapes.landmarks import locate_landmarks
+from ..shapes.landmarks import locate_landmarks, vertex_pairs
 from ..shapes.prepared_surface import PreparedSurface
-from ..shapes.shape import Shape, check_surface
+from ..shapes.shape import Shape, left_out_of
 from ..shapes.shape_preparation import finer_shapes
 
 _DETAILED = 100
@@ -83,21 +83,23 @@ def refine_map_steps(
     MeshError
         If a surface is none.
     """
-    for surface, name in ((source, "source"), (target, "target")):
-        check_surface(surface, name)
+    for mesh, name in ((source, "source"), (target, "target")):
+        check_mesh(mesh, name)
     if target_to_source is not None:
         target_to_source.check(target, source)
+    masks = left_out_of((source, target), excluded)
     mirrored = source_to_target.orientation(source, target) < 0
-    ends = _ends(landmarks)
+    pairs = vertex_pairs(landmarks)
+    if not len(pairs):
+        raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
+    ends = pairs[:, 0], pairs[:, 1]
     pieces = piece_of(source, source_to_target, ends[0]), piece_of(target, target_to_source, ends[1])
-    first, second = (_left_out(mask, piece) for mask, piece in zip(excluded, pieces, strict=True))
+    first, second = (_left_out(mask, piece) for mask, piece in zip(masks, pieces, strict=True))
     seen = reflected_mesh(source) if mirrored else source
     x = yield from within(Shape.steps(seen, "source", excluded=first), 0.0, 0.05)
     y = yield from within(Shape.steps(target, "target", excluded=second), 0.05, 0.08)
     x, y = yield from within(joined_shapes_steps(x, y, source_to_target, ends), 0.08, 0.1)
-    known = locate_landmarks(x, y, landmarks, np.size(landmarks))
-    if known is None:
-        raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
+    known = locate_landmarks(x, y, pairs, len(pairs))
     places = source_to_target.positions[x.vertices]
     x, y = finer_shapes(x, y)
     yield from within(x.spectrum_steps(EIGENPAIRS), 0.1, 0.15)
@@ -119,15 +121,6 @@ def refine_map_steps(
 
 
 refine_map = at_once(refine_map_steps)
-
-
-def _ends(landmarks: ArrayLike) -> tuple[Ints, Ints]:
-    """Take pairs of vertices apart; what is no such array has none, and is refused later."""
-    pairs = np.asarray(landmarks)
-    if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.issubdtype(pairs.dtype, np.integer):
-        pairs = np.empty((0, 2), np.int64)
-    first, second = pairs.astype(np.int64).T
-    return first, second
 
 
 def _left_out(excluded: Bools | None, piece: Bools | None) -> Bools | None:

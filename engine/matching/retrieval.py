@@ -19,7 +19,7 @@ from ..runtime.arrays import Bools, Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, at_once, part_of, within
-from ..shapes.shape import Shape, check_surface
+from ..shapes.shape import Shape, check_surface, check_vertex_count, shape_steps
 
 _LEVELS = (np.arange(64) + 0.5) / 64  # at which the quantiles of distances are taken
 
@@ -156,22 +156,26 @@ def retrieve_steps(
     ------
     MatchError
         If the list is empty, or a surface has too few vertices for the points that were asked for.
+    MeshError, SettingsError
+        If a surface is none, as its arrays, or the settings are others, as a dictionary.
 
     References
     ----------
     .. [1] F. Mémoli, "Gromov-Wasserstein distances and the metric approach to object matching", Foundations of
        Computational Mathematics 11, 2011: the third lower bound.
     """
-    settings = settings or RetrievalSettings()
-    if not len(shapes):
+    settings = RetrievalSettings.checked(settings)
+    surfaces = [query, *([shapes] if isinstance(shapes, (TriangleMesh, Shape)) else shapes)]
+    if len(surfaces) == 1:
         raise MatchError("There are no shapes to compare with: choose at least one beside the query.")
-    for number, surface in enumerate([query, *shapes]):
+    for number, surface in enumerate(surfaces):
         check_surface(surface, f"shape {number} of the list" if number else "query")
-    source = query if isinstance(query, Shape) else Shape(query)
-    targets = [shape if isinstance(shape, Shape) else Shape(shape) for shape in shapes]
-    _check(source, "The query", settings)
-    for number, target in enumerate(targets):
-        _check(target, f"Shape {number + 1} of the list", settings)
+    prepared = []
+    for number, surface in enumerate(surfaces):
+        prepared.append((yield from within(shape_steps(surface), 0.0, 0.0)))
+        name = f"Shape {number} of the list" if number else "query"
+        check_vertex_count(prepared[-1], settings.points, name)
+    source, *targets = prepared
     signatures = []
     for number, shape in enumerate([source, *targets]):
         part = part_of(number, len(targets) + 1, end=0.5)
@@ -195,15 +199,6 @@ def retrieve_steps(
 
 
 retrieve = at_once(retrieve_steps)
-
-
-def _check(shape: Shape, name: str, settings: RetrievalSettings) -> None:
-    if shape.mesh.vertex_count < settings.points:
-        raise MatchError(
-            f"{name} has only {shape.mesh.vertex_count} vertices"
-            f"{' in its main part' if not shape.surface.is_whole else ''}, too few to match "
-            f"{settings.points} points. Use fewer points, subdivide the mesh or leave it out."
-        )
 
 
 class _Signature:

@@ -24,11 +24,10 @@ from ..hierarchical.sparse_result import CoarseMatch
 from ..mesh.surface_map import SurfaceMap
 from ..mesh.surface_points import SurfacePoints
 from ..runtime.arrays import Floats, Ints
-from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, within
 from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import Landmarks, locate_landmarks, placed_at_vertices
-from ..shapes.shape import Shape
+from ..shapes.shape import Shape, check_vertex_count
 from ..shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
 from ..shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
 from .result import MIRRORED, MatchResult, turned_name
@@ -100,16 +99,7 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
     settings, landmarks, clock = task.settings, task.landmarks, task.clock
     x, y = yield from within(evened_steps(x, y), 0.0, 0.0)
     clock.lap("preparation")
-    fewest = min(shape.mesh.vertex_count for shape in (x, y))
-    if settings.dense and settings.coarse_points <= fewest < settings.points:
-        settings = replace(settings, points=fewest)  # a dense map has every vertex, however many points there are
-    for shape, name in ((x, "source"), (y, "target")):
-        if shape.mesh.vertex_count < settings.points:
-            raise MatchError(
-                f"{settings.points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices"
-                f"{'' if shape.surface.is_whole else ' in its main part'}. "
-                "Use fewer points or subdivide the mesh."
-            )
+    settings = fitting_settings(x, y, settings)
     known = None if landmarks is None else locate_landmarks(x, y, landmarks, settings.points, assumed=task.assumed)
     if known is not None:
         x, y = x.starting_with(known.source.matched), y.starting_with(known.target.matched)
@@ -150,6 +140,20 @@ def matched_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
         target_to_source=dense.target_to_source,
         quality=with_alternatives(dense.quality, sum(name != MIRRORED for name, _ in others)),
     )
+
+
+def fitting_settings(x: Shape, y: Shape, settings: MatchSettings) -> MatchSettings:
+    """Return settings with no more points than two shapes have vertices: a dense map has every vertex all the same.
+
+    Raises
+    ------
+    MatchError
+        If either has fewer than coarse points, or without a dense map than points.
+    """
+    least = min(settings.coarse_points, settings.points) if settings.dense else settings.points
+    for shape, name in ((x, "source"), (y, "target")):
+        check_vertex_count(shape, settings.points, name, least)
+    return replace(settings, points=min(settings.points, x.mesh.vertex_count, y.mesh.vertex_count))
 
 
 def sampled_steps(x: Shape, y: Shape, settings: MatchSettings) -> Steps[None]:

@@ -21,7 +21,7 @@ from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, at_once, part_of, within
-from ..shapes.shape import Shape, check_surface
+from ..shapes.shape import Shape, check_vertex_count, shape_steps
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
 _MOVED_SHARE = 0.3  # part of the coarse points that has to be in another place: the others may lie on the axis
@@ -129,6 +129,8 @@ def find_symmetry_steps(
     ------
     MatchError
         If the surface has too few vertices for the points, or is so small that nothing can move.
+    MeshError, SettingsError
+        If the surface is none, as its arrays, or the settings are others, as a dictionary.
 
     References
     ----------
@@ -136,15 +138,9 @@ def find_symmetry_steps(
     .. [2] D. Raviv, A. M. Bronstein, M. M. Bronstein, R. Kimmel, "Full and partial symmetries of non-rigid shapes",
        IJCV 89, 2010.
     """
-    settings = settings or MatchSettings()
-    check_surface(surface)
-    shape = surface if isinstance(surface, Shape) else Shape(surface)
-    if shape.mesh.vertex_count < settings.points:
-        raise MatchError(
-            f"No symmetry can be found with {settings.points} points: the mesh has only {shape.mesh.vertex_count} "
-            f"vertices{' in its main part' if not shape.surface.is_whole else ''}. "
-            "Use fewer points or subdivide the mesh."
-        )
+    settings = MatchSettings.checked(settings)
+    shape = yield from within(shape_steps(surface), 0.0, 0.0)
+    check_vertex_count(shape, settings.points)
     yield from within(shape.sample_steps(max(settings.samples, 2 * settings.points)), 0.0, 0.5)
     if Pair.needs_spectrum(settings):
         yield from within(shape.spectrum_steps(settings.eigenpairs), 0.5, 0.55)
@@ -152,7 +148,7 @@ def find_symmetry_steps(
     coarse = yield from within(_coarse_steps(pair), 0.55, 0.7, "Matching the surface to itself")
     candidates = yield from within(_candidate_steps(pair, coarse), 0.7, 0.9, "Comparing symmetries")
     best = next((c for c in candidates if c.orientation < 0), candidates[0])
-    chosen = [best, *(c for c in candidates if c is not best)][: 1 + alternatives]
+    chosen = [best, *(c for c in candidates if c is not best)][: 1 + max(alternatives, 0)]
     results = []
     for number, candidate in enumerate(chosen):
         yield Progress(0.9 + 0.1 * number / len(chosen), "Placing the points")

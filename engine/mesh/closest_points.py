@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from ..runtime.arrays import TINY, Floats, Ints, ranges, slices
 from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
-from .triangle_mesh import TriangleMesh
+from .triangle_mesh import TriangleMesh, check_mesh
 
 _BLOCK = 10_000
 """Points that are searched side by side; the last steps, of few points each, are then shared by many."""
@@ -136,6 +136,7 @@ class ClosestPoints:
     """
 
     def __init__(self, mesh: TriangleMesh) -> None:
+        check_mesh(mesh)
         self._start(mesh.vertices, _Rings(mesh.triangles, mesh.vertex_count))
 
     def _start(self, vertices: Floats, rings: _Rings) -> None:

@@ -195,6 +195,28 @@ class TriangleMesh:
         return TriangleMesh(self.vertices[vertices], renumber[self.triangles[triangles]]), vertices, triangles
 
 
+def check_mesh(mesh: object, name: str = "surface") -> None:
+    """Raise an error if what should be a mesh is not: its vertices, say, or None.
+
+    Parameters
+    ----------
+    mesh : object
+        What was given for it.
+    name : str
+        What the error calls it.
+
+    Raises
+    ------
+    MeshError
+        If it is none.
+    """
+    if not isinstance(mesh, TriangleMesh):
+        raise MeshError(
+            f"The {name} is of the type {type(mesh).__name__}. Make a mesh of its vertices and triangles first: "
+            "TriangleMesh(vertices, triangles)."
+        )
+
+
 def triangle_areas(vertices: Floats, triangles: Ints) -> Floats:
     """Area of each of some triangles (m, 3) of vertices (n, 3): (m,)."""
     return np.linalg.norm(_area_vectors(vertices, triangles), axis=1)

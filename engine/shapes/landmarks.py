@@ -60,7 +60,7 @@ class Landmarks:
         return len(self.source)
 
 
-def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int, *, assumed: bool = False) -> Landmarks | None:
+def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int, *, assumed: bool = False) -> Landmarks:
     """Find landmarks on the surfaces that are matched.
 
     Parameters
@@ -74,21 +74,13 @@ def locate_landmarks(x: Shape, y: Shape, pairs: ArrayLike, most: int, *, assumed
     assumed : bool
         Whether it is only tried that they correspond.
 
-    Returns
-    -------
-    Landmarks or None
-        None if there are no pairs.
-
     Raises
     ------
     MatchError
         If they are no such pairs, are too many, name a vertex twice, one that does not exist, or one that is not on the
         main part of its mesh.
     """
-    array = landmark_pairs(x, y, pairs, most)
-    if not len(array):
-        return None
-    source, target = array.T
+    source, target = landmark_pairs(x, y, pairs, most).T
     return Landmarks(_places(x.surface, source, "source"), _places(y.surface, target, "target"), assumed)
 
 
@@ -110,7 +102,29 @@ def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> In
     MatchError
         If they are no such pairs, are too many, name a vertex twice, or one that does not exist.
     """
-    array = np.asarray([] if pairs is None else pairs)
+    array = vertex_pairs(pairs)
+    if len(array) > most:
+        raise MatchError(
+            f"{len(array)} landmarks are more than the {most} points that are matched. "
+            "Use more points or fewer landmarks."
+        )
+    for surface, vertices, name in zip((x.surface, y.surface), array.T, ("source", "target"), strict=True):
+        _check_vertices(vertices, surface.original.vertex_count, name)
+    return array
+
+
+def vertex_pairs(pairs: ArrayLike | None) -> Ints:
+    """Return landmarks as an array (k, 2) of vertices of the source and of the target; None stands for no landmarks.
+
+    Raises
+    ------
+    MatchError
+        If they are no such pairs.
+    """
+    try:
+        array = np.asarray([] if pairs is None else pairs)
+    except ValueError:  # rows of different lengths
+        array = np.array(None)
     if array.size == 0:
         return np.empty((0, 2), np.int64)
     if array.ndim != 2 or array.shape[1] != 2 or not np.issubdtype(array.dtype, np.integer):
@@ -118,15 +132,7 @@ def landmark_pairs(x: Shape, y: Shape, pairs: ArrayLike | None, most: int) -> In
             "Landmarks should be pairs of vertex numbers, first of the source and then of the target: whole numbers in "
             f"an array of the shape (k, 2), not {array.dtype} in the shape {array.shape}."
         )
-    if len(array) > most:
-        raise MatchError(
-            f"{len(array)} landmarks are more than the {most} points that are matched. "
-            "Use more points or fewer landmarks."
-        )
-    array = array.astype(np.int64)
-    for surface, vertices, name in zip((x.surface, y.surface), array.T, ("source", "target"), strict=True):
-        _check_vertices(vertices, surface.original.vertex_count, name)
-    return array
+    return array.astype(np.int64)
 
 
 def placed_at_vertices(points: SurfacePoints, mesh: TriangleMesh, rows: Ints, vertices: Ints) -> SurfacePoints:

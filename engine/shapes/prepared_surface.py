@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.reflection import reflected_mesh, reflected_points, reflected_positions
 from ..mesh.surface_points import SurfacePoints
-from ..mesh.triangle_mesh import TriangleMesh
+from ..mesh.triangle_mesh import TriangleMesh, check_mesh
 from ..repair.clean_surface import CleanSurface
 from ..repair.cleaning import clean
 from ..runtime.arrays import Bools, Floats, Ints, marked
@@ -186,7 +186,10 @@ def prepared_steps(
     ------
     MatchError
         If all triangles are excluded, or the mask does not fit the mesh.
+    MeshError
+        If it is no mesh.
     """
+    check_mesh(mesh, name)
     yield Progress(0.0, "Cleaning")
     kept = np.arange(mesh.triangle_count)
     part, left_out = mesh, np.zeros(mesh.vertex_count, bool)

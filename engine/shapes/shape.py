@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 from ..geometry.eigenpairs import Spectrum, eigenpairs_steps
 from ..geometry.geodesics import GeodesicSolver
 from ..geometry.laplacian import LaplaceBeltrami, laplace_beltrami
-from ..mesh.triangle_mesh import TriangleMesh
+from ..mesh.triangle_mesh import TriangleMesh, check_mesh
 from ..runtime.arrays import Bools, Floats, Ints
-from ..runtime.errors import MatchError, MeshError
+from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, run
 from .prepared_surface import PreparedSurface, prepared_steps
 from .proxy import MATCHED, Proxy
@@ -290,40 +290,52 @@ class Shape:
 
 
 def check_surface(surface: object, name: str = "surface") -> None:
-    """Raise an error if what should be a surface is not: its vertices, say, or None.
-
-    Parameters
-    ----------
-    surface : object
-        What was given for a mesh, or the shape of one.
-    name : str
-        What the error calls it.
-
-    Raises
-    ------
-    MeshError
-        If it is neither.
-    """
-    if not isinstance(surface, (TriangleMesh, Shape)):
-        raise MeshError(
-            f"The {name} is of the type {type(surface).__name__}. Make a mesh of its vertices and triangles first: "
-            "TriangleMesh(vertices, triangles)."
-        )
+    """Raise a `MeshError` if what should be a mesh, or the shape of one, is neither; see `check_mesh`."""
+    if not isinstance(surface, Shape):
+        check_mesh(surface, name)
 
 
-def left_out_of(surface: TriangleMesh | Shape, name: str, excluded: ArrayLike | None) -> Bools | None:
-    """Return which vertices (n,) are to be left out of a mesh, or None; nothing can be left out of a shape any more.
+def shape_steps(surface: TriangleMesh | Shape, name: str = "surface") -> Steps[Shape]:
+    """Return a shape as it is, and make one of a mesh; see `check_surface`."""
+    check_surface(surface, name)
+    return surface if isinstance(surface, Shape) else (yield from Shape.steps(surface))
+
+
+def check_vertex_count(shape: Shape, points: int, name: str = "mesh", least: int | None = None) -> None:
+    """Raise an error if a shape, which it calls by a name, has fewer vertices than points, or than are needed at least.
 
     Raises
     ------
     MatchError
-        If it should.
+        If it has.
     """
-    if excluded is None:
-        return None
-    if isinstance(surface, Shape):
+    if shape.mesh.vertex_count < (points if least is None else least):
         raise MatchError(
-            f"No vertices can be left out of the {name} any more, because it was prepared before. "
-            "Give the mesh itself, or leave them out when you make the shape."
+            f"{points} points cannot be matched: the {name} has only {shape.mesh.vertex_count} vertices"
+            f"{'' if shape.surface.is_whole else ' in its main part'}. Use fewer points or subdivide the mesh."
         )
-    return np.asarray(excluded, bool)
+
+
+def left_out_of(
+    surfaces: tuple[TriangleMesh | Shape, TriangleMesh | Shape], excluded: tuple[ArrayLike | None, ArrayLike | None]
+) -> list[Bools | None]:
+    """Return which vertices (n,) are to be left out of the source and the target, or None.
+
+    Raises
+    ------
+    MatchError
+        If that is no pair, or something is to be left out of a shape, of which nothing can be any more.
+    """
+    try:
+        masks = first, second = tuple(excluded)
+    except (TypeError, ValueError) as error:
+        raise MatchError(
+            "What is to be left out should be a pair: vertices of the source, and vertices of the target, or None."
+        ) from error
+    for surface, name, mask in zip(surfaces, ("source", "target"), masks, strict=True):
+        if mask is not None and isinstance(surface, Shape):
+            raise MatchError(
+                f"No vertices can be left out of the {name} any more, because it was prepared before. "
+                "Give the mesh itself, or leave them out when you make the shape."
+            )
+    return [None if mask is None else np.asarray(mask, bool) for mask in (first, second)]
