@@ -66,6 +66,11 @@ class TriangleMesh:
         """Leave out what is computed of it when that is asked for."""
         return {"vertices": self.vertices, "triangles": self.triangles}
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make the arrays read-only, which copies of them are not."""
+        for name, array in state.items():
+            object.__setattr__(self, name, _read_only(array))
+
     @classmethod
     def concatenated(cls, meshes: Sequence[TriangleMesh]) -> TriangleMesh:
         """Put several meshes into one, as components of it in this order; a single one is returned as it is."""
@@ -93,7 +98,7 @@ class TriangleMesh:
     @cached_property
     def triangle_areas(self) -> Floats:
         """Area of each triangle, (m,)."""
-        return np.linalg.norm(self._area_vectors, axis=1)
+        return _read_only(np.linalg.norm(self._area_vectors, axis=1))
 
     @cached_property
     def area(self) -> float:
@@ -103,17 +108,18 @@ class TriangleMesh:
     @cached_property
     def triangle_normals(self) -> Floats:
         """Unit normal of each triangle, (m, 3); zero for a triangle without area."""
-        return unit_vectors(self._area_vectors)
+        return _read_only(unit_vectors(self._area_vectors))
 
     @cached_property
     def vertex_areas(self) -> Floats:
         """A third of the area of the triangles around each vertex, (n,); they sum to `area`."""
-        return self.sum_at_vertices(self.triangle_areas / 3)
+        return _read_only(self.sum_at_vertices(self.triangle_areas / 3))
 
     @cached_property
     def vertex_normals(self) -> Floats:
         """Unit normal at each vertex, weighted by triangle area, (n, 3); zero at a vertex without a triangle."""
-        return unit_vectors(np.stack([self.sum_at_vertices(component) for component in self._area_vectors.T], axis=1))
+        sums = np.stack([self.sum_at_vertices(component) for component in self._area_vectors.T], axis=1)
+        return _read_only(unit_vectors(sums))
 
     def sum_at_vertices(self, values: Floats) -> Floats:
         """Sum a value per triangle, (m,), over the triangles around each vertex, (n,)."""
@@ -126,7 +132,7 @@ class TriangleMesh:
         a, b = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         # One integer per edge: far faster to sort than rows.
         keys, counts = np.unique(np.minimum(a, b) * self.vertex_count + np.maximum(a, b), return_counts=True)
-        return np.stack(np.divmod(keys, self.vertex_count), axis=1), counts
+        return _read_only(np.stack(np.divmod(keys, self.vertex_count), axis=1)), counts
 
     @property
     def edges(self) -> Ints:
@@ -136,7 +142,8 @@ class TriangleMesh:
     @cached_property
     def edge_lengths(self) -> Floats:
         """Length of each of `edges`, (e,)."""
-        return np.linalg.norm(self.vertices[self.edges[:, 0]] - self.vertices[self.edges[:, 1]], axis=1)
+        a, b = self.edges.T
+        return _read_only(np.linalg.norm(self.vertices[a] - self.vertices[b], axis=1))
 
     @cached_property
     def boundary_edges(self) -> Ints:
@@ -234,6 +241,8 @@ def _read_only(array: NDArray[Any]) -> NDArray[Any]:
 
 
 def _as_vertices(vertices: ArrayLike) -> Floats:
+    if isinstance(vertices, np.ndarray) and np.iscomplexobj(vertices):
+        raise MeshError("The vertex positions should be real numbers, but are complex ones.")
     try:
         array = np.array(vertices, dtype=np.float64)
     except (TypeError, ValueError) as error:

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Triangle meshes: what they refuse, and geometry known in closed form."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -47,6 +50,27 @@ def test_arrays_are_copied_and_read_only():
     for array in (mesh.vertices, mesh.triangles):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0
+
+
+def sent(mesh):
+    """The mesh as another process gets it."""
+    return pickle.loads(pickle.dumps(mesh))  # noqa: S301
+
+
+def test_complex_positions_are_refused_in_words():
+    vertices, triangles = plane(3)
+    with pytest.raises(MeshError, match="should be real numbers"):
+        TriangleMesh(vertices + 1j, triangles)
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, sent])
+def test_copies_and_all_that_is_computed_are_read_only(copied):
+    mesh = copied(TriangleMesh(*plane(3)))
+    assert mesh.area == pytest.approx(1)
+    computed = mesh.triangle_areas, mesh.triangle_normals, mesh.vertex_areas, mesh.vertex_normals
+    for array in (mesh.vertices, mesh.triangles, *computed, mesh.edges, mesh.edge_lengths):
+        with pytest.raises(ValueError, match="read-only"):
+            array[:] = 0
 
 
 @pytest.mark.parametrize("dtype", [np.int32, np.uint8, np.int64])
