@@ -49,7 +49,10 @@ class Polygons:
 
     def __post_init__(self) -> None:
         for name in ("starts", "corner_vertices", "edges", "corner_edges", "triangle_corners"):
-            object.__setattr__(self, name, np.asarray(getattr(self, name), np.int64))
+            array = np.asarray(getattr(self, name))
+            if array.size and (array.dtype.kind not in "iu" or array.min() < 0):
+                raise MeshError(f"The {name} of faces should be numbers of corners, vertices or edges, from 0 on.")
+            object.__setattr__(self, name, array.astype(np.int64, copy=False))
         corners = len(self.corner_vertices)
         if self.starts.ndim != 1 or not len(self.starts) or self.starts[0] != 0 or self.starts[-1] != corners:
             raise MeshError(f"The faces should divide {corners} corners among them, but they do not.")

@@ -66,9 +66,10 @@ class SurfaceMap:
             )
         if not ((confidence >= 0) & (confidence <= 1)).all():
             raise MatchError("The confidence of a map should be between 0 and 1 everywhere.")
-        if len(self.points) and self.corners.max() >= self.image_vertex_count:
+        outside = self.corners[(self.corners < 0) | (self.corners >= self.image_vertex_count)]
+        if len(outside):
             raise MatchError(
-                f"A map to a mesh of {self.image_vertex_count} vertices has a point at vertex {self.corners.max()}: "
+                f"A map to a mesh of {self.image_vertex_count} vertices has a point at vertex {outside[0]}: "
                 "its points are on another mesh."
             )
         partners = np.asarray(self.has_partner, bool)

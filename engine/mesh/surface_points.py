@@ -58,14 +58,16 @@ class SurfacePoints:
         Raises
         ------
         MeshError
-            If a vertex is in no triangle: there is no surface at it.
+            If a vertex is in no triangle, or there is none of that number: there is no surface at it.
         """
+        vertices = np.asarray(vertices, None if np.size(vertices) else np.int64)
         first_corner = np.full(mesh.vertex_count, -1)
         flat = mesh.triangles.ravel()
         first_corner[flat[::-1]] = np.arange(len(flat))[::-1]
-        chosen = first_corner[vertices]
+        exists = (vertices >= 0) & (vertices < mesh.vertex_count)
+        chosen = np.where(exists, first_corner[np.where(exists, vertices, 0)], -1)
         if (chosen < 0).any():
-            loose = np.asarray(vertices)[chosen < 0]
+            loose = vertices[chosen < 0]
             raise MeshError(
                 f"Vertex {loose[0]} of the mesh is in no face, so that it is not on the surface. "
                 "Delete loose vertices, or choose one that has a face."

@@ -75,6 +75,9 @@ def test_another_mesh_is_refused():
         ({"starts": [0, 4]}, "divide 3 corners"),
         ({"corner_edges": [0, 1, 5]}, "one of 3 edges"),
         ({"triangle_corners": [[0, 1, 7]]}, "beyond the 3"),
+        ({"triangle_corners": [[0, 1, -1]]}, "triangle_corners of faces should be numbers"),
+        ({"corner_edges": [0, -1, 2]}, "corner_edges of faces should be numbers"),
+        ({"corner_vertices": [0, 1.7, 2]}, "corner_vertices of faces should be numbers"),
     ],
 )
 def test_arrays_that_do_not_belong_together(change, message):

@@ -334,6 +334,12 @@ def test_points_must_be_on_the_image(flat, other_flat):
         SurfaceMap.from_points(flat, points)
 
 
+def test_points_are_at_vertices_that_there_are(flat):
+    points = SurfacePoints.at_vertices(flat, np.arange(4))
+    with pytest.raises(MatchError, match="has a point at vertex -1"):
+        SurfaceMap(replace(points, corners=points.corners - points.corners.min() - 1), np.ones(4), flat.vertex_count)
+
+
 def test_no_vertices(flat):
     nothing = SurfaceMap.from_points(flat, SurfacePoints.at_vertices(flat, np.empty(0, int)))
     assert nothing.transfer(np.zeros((flat.vertex_count, 2))).shape == (0, 2)

@@ -54,6 +54,12 @@ def test_at_vertices_stays_at_the_vertices(mesh):
     assert (points.barycentric.max(axis=1) == 1).all()
 
 
+@pytest.mark.parametrize("vertex", [-1, 160, 10**6])
+def test_there_is_no_surface_at_a_vertex_that_there_is_not(mesh, vertex):
+    with pytest.raises(MeshError, match=f"Vertex {vertex} of the mesh is in no face"):
+        SurfacePoints.at_vertices(mesh, np.array([0, vertex]))
+
+
 def test_at_vertices_takes_the_first_triangle():
     mesh = TriangleMesh(*plane(6))
     everywhere = SurfacePoints.at_vertices(mesh, np.arange(mesh.vertex_count))
