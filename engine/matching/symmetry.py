@@ -56,8 +56,8 @@ class SymmetryResult:
         front-back on a thin body; this can.
     sides : (n,) array of float
         For each vertex of the surface, on which side of the axis it lies: positive on one, negative on the other,
-        growing with the distance from the axis (in the units of the mesh, but no more than half the distance between
-        the vertex and its image); NaN on other parts of the surface than the largest.
+        growing with the distance from the axis (in the units of the mesh, at most about half the distance between the
+        vertex and its image); NaN on other parts of the surface than the largest.
     axis_points : SurfacePoints
         Where edges cross the fixed curve, the symmetry axis; none if the map keeps the orientation.
     alternatives : tuple of SymmetryResult
@@ -213,7 +213,7 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) 
     everywhere = np.arange(len(distances))
     misfit = sample_misfits(shape, shape, assignment, sign).all
     images = misfit.argmin(axis=1)
-    involution = float(distances[images[images], everywhere].mean())
+    of_first = float(distances[images[images], everywhere].mean())
     for _ in range(_ROUNDS):
         # An involution that keeps distances takes x to y and y to x: both have to fit.
         before = images
@@ -228,7 +228,8 @@ def _assess(shape: Shape, coarse: BoundedMatching, assignment: Ints, sign: int) 
     # what counts is the change for the way that the points go.
     way = float(np.square(distances[images, everywhere]).mean())
     score = np.log(max(float(np.square(change).mean()), TINY) / max(way, TINY))
-    score += (involution / _INVOLUTION_SCALE) ** 2 - CURVATURE_WEIGHT * curvature
+    score += (of_first / _INVOLUTION_SCALE) ** 2 - CURVATURE_WEIGHT * curvature
+    involution = float(distances[images[images], everywhere].mean())
     return _Candidate(coarse, images, orientation, involution, curvature, float(score))
 
 

@@ -4,7 +4,9 @@
 import numpy as np
 import pytest
 
+from engine.hierarchical.lifted_samples import curvature_agreement
 from engine.hierarchical.settings import MatchSettings
+from engine.matching import symmetry
 from engine.matching.symmetry import find_symmetry, find_symmetry_steps
 from engine.mesh.triangle_mesh import TriangleMesh
 from engine.runtime.errors import MatchError
@@ -193,3 +195,18 @@ def test_every_even_or_odd_exchange_of_the_corners_of_a_tetrahedron_is_a_symmetr
     images = result.target_points.nearest_vertices
     assert sorted(images.tolist()) == [0, 1, 2, 3]
     assert (images != result.source_points.nearest_vertices).any()
+
+
+def test_how_far_twice_the_map_leads_is_that_of_the_map_that_is_returned(monkeypatch):
+    seen = []
+
+    def noting(source, target, images):
+        seen.append(images)
+        return curvature_agreement(source, target, images)
+
+    monkeypatch.setattr(symmetry, "curvature_agreement", noting)
+    shape = Shape(TriangleMesh(*mirrored_body(0.5, 8)[:2]))
+    result = find_symmetry(shape)
+    distances = shape.samples.distances
+    twice = [distances[images[images], np.arange(len(images))].mean() for images in seen]
+    assert result.involution in [pytest.approx(each, abs=1e-12) for each in twice]
