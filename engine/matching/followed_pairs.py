@@ -28,8 +28,10 @@ def followed_share(
     Returns
     -------
     float
-        Part of the places on both meshes, 0 to 1.
+        Part of the places on both meshes, 0 to 1; 1 if there are no pairs.
     """
+    if not len(pairs):
+        return 1.0
     ways = zip(maps, meshes[::-1], pairs.T, pairs.T[::-1], strict=True)
     nearest = [cKDTree(image.vertices[to]).query(way.positions[of])[1] for way, image, of, to in ways]
     return float((np.array(nearest) == np.arange(len(pairs))).mean())

@@ -22,3 +22,9 @@ def test_what_is_taken_to_its_partner_and_what_is_taken_to_that_of_another():
     assert followed_share((crossed, same), (mesh, mesh), pairs) == pytest.approx(4 / 6)
     assert followed_share((crossed, crossed), (mesh, mesh), pairs[:, ::-1]) == pytest.approx(1 / 3)
     assert followed_share((same, same), (mesh, mesh), pairs[[[0], [1]], [[0, 1]]]) == 1
+
+
+def test_no_pairs_are_all_followed():
+    mesh = TriangleMesh(*icosphere(2))
+    same = SurfaceMap.identity(mesh)
+    assert followed_share((same, same), (mesh, mesh), np.empty((0, 2), int)) == 1
