@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array
 
+from ..geometry.procrustes import nearest_rotations
 from ..mesh.closest_points import ClosestPoints
 from ..mesh.connectivity.adjacency import averaging, vertex_adjacency
 from ..mesh.surface_points import SurfacePoints
@@ -229,10 +230,8 @@ def _motion(proxy: Proxy, registered: Floats, average: csr_array) -> Floats:
     sums = group_sums(np.concatenate([a, b]), np.tile(products, (2, 1)), k)
     for _ in range(_ROTATION_ROUNDS):
         sums = average @ sums
-    u, _, vt = np.linalg.svd(sums[:, :9].reshape(k, 3, 3))
-    u[:, :, 2] *= np.sign(np.linalg.det(u @ vt))[:, None]
     scales = np.sqrt(sums[:, 9] / np.maximum(sums[:, 10], TINY))
-    turns = scales[:, None, None] * (u @ vt)
+    turns = scales[:, None, None] * nearest_rotations(sums[:, :9].reshape(k, 3, 3))
     shifts = registered - np.einsum("kab,kb->ka", turns, rest)
     motion = np.concatenate([turns, shifts[:, :, None]], axis=2).reshape(k, 12)
     if proxy.is_coarser:  # between its vertices there is something to smooth
