@@ -229,14 +229,13 @@ class ClosestPoints:
         Raises
         ------
         MeshError
-            If points or normals are not (k, 3) finite numbers.
+            If points or normals are not (k, 3) finite numbers, or not as many.
         """
         return self._nearest_vertices(points, normals, normal_length, 1)[:, 0]
 
     def _nearest_vertices(self, points: Floats, normals: Floats | None, normal_length: float, count: int) -> Ints:
         """Find the `count` nearest vertices, (k, count), or all where there are fewer."""
-        points = _checked(points, "points", self.vertices.shape[1])
-        normals = None if normals is None else _checked(normals, "normals", 3)
+        points, normals = _checked_pair(points, normals, self.vertices.shape[1])
         weight = float(normal_length) if normals is not None else 0.0
         tree = self._tree(weight)
         count = min(count, tree.n)
@@ -281,8 +280,7 @@ class ClosestPoints:
             The closest points.  Where triangles are many, and differ much in size, the closest may be in a large
             triangle far from the nearest vertex, and be missed.
         """
-        points = _checked(points, "points", self.vertices.shape[1])
-        normals = None if normals is None else _checked(normals, "normals", 3)
+        points, normals = _checked_pair(points, normals, self.vertices.shape[1])
         if len(points) * len(self.triangles) <= _FEW_PAIRS:
             return self._of_all(points, normals, normal_weight, normal_gate)
         starts = self._nearest_vertices(points, normals, normal_length, _STARTS)
@@ -354,13 +352,13 @@ class ClosestPoints:
         Raises
         ------
         MeshError
-            If a start vertex has no triangle, or points or normals are not (k, 3) finite numbers.
+            If a start vertex has no triangle or is none, or points or normals are not (k, 3) finite numbers.
         """
-        points = _checked(points, "points", self.vertices.shape[1])
-        normals = None if normals is None else _checked(normals, "normals", 3)
+        points, normals = _checked_pair(points, normals, self.vertices.shape[1])
         starts = np.asarray(start_vertices, np.int64)
         starts = starts[:, None] if starts.ndim == 1 else starts
-        if not self._rings.counts[starts].all():
+        exists = (starts >= 0) & (starts < len(self.vertices))
+        if not exists.all() or not self._rings.counts[starts].all():
             raise MeshError("A search along the surface starts at a vertex without a triangle. Delete loose vertices.")
         k = len(points)
         triangles, barycentric, squared_distances = np.empty(k, np.int64), np.empty((k, 3)), np.empty(k)
@@ -561,6 +559,15 @@ def _least(values: Floats, counts: Ints) -> tuple[Floats, Ints]:
         return least, equal
     run = np.repeat(np.arange(len(counts)), counts).take(equal)
     return least, equal[np.append(True, run[1:] != run[:-1])]
+
+
+def _checked_pair(points: Floats, normals: Floats | None, dimensions: int) -> tuple[Floats, Floats | None]:
+    """Return points (k, d) and their normals (k, 3), if they have any, after a look at their shapes and values."""
+    points = _checked(points, "points", dimensions)
+    normals = None if normals is None else _checked(normals, "normals", 3)
+    if normals is not None and len(normals) != len(points):
+        raise MeshError(f"There are {len(normals)} normals to search with for {len(points)} points, not one for each.")
+    return points, normals
 
 
 def _checked(vectors: Floats, name: str, dimensions: int) -> Floats:

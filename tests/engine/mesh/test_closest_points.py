@@ -411,6 +411,21 @@ def test_points_and_normals_are_checked(star, points):
             search.walk(arguments[0], np.zeros(len(points), int), *arguments[1:])
 
 
+def test_there_is_a_normal_for_each_point_and_a_search_starts_at_a_vertex(star):
+    search, points = ClosestPoints(star), star.vertices[:2] * 1.1
+    starts = np.zeros(2, int)
+    for searched in (
+        search.nearest,
+        search.nearest_vertices,
+        lambda points, normals: search.walk(points, starts, normals),
+    ):
+        with pytest.raises(MeshError, match="1 normals to search with for 2 points"):
+            searched(points, star.vertex_normals[:1])
+    for vertex in (-5, star.vertex_count):
+        with pytest.raises(MeshError, match="at a vertex without a triangle"):
+            search.walk(points, starts + vertex)
+
+
 def test_what_is_forgotten_is_found_again(star):
     search = ClosestPoints(star)
     points, normals = star.vertices + 0.01, star.vertex_normals
