@@ -95,7 +95,7 @@ def remember_common(scene: bpy.types.Scene) -> None:
     It calls source and target what they do.  If they carry none, it is hidden as long as they are picked.
     """
     _remember_common(scene)
-    summary_of(scene).hidden = not is_of_picked(scene)
+    summary_of(scene).hidden = summary_of(scene).points > 0 and not is_of_picked(scene)
 
 
 def _remember_common(scene: bpy.types.Scene) -> None:
