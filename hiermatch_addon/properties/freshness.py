@@ -14,6 +14,7 @@ from bpy.app.handlers import persistent
 
 from ..common.access import mesh_of
 from ..common.redraw import redraw_sidebars
+from ..scene.mesh_io import unedited
 from ..storage.halves import MIRRORED, find_carriers, is_mirrored
 from ..storage.landmark_layer import has_landmarks
 from ..storage.writing import is_marked
@@ -34,6 +35,7 @@ _PLAYING_DELAY = 1.0
 """Seconds until the next try while an animation plays, which must not stutter."""
 
 
+@unedited()
 def refresh(scene: bpy.types.Scene) -> None:
     """Find out whether the match that a scene's panel shows is out of date, and what its lists are to show.
 

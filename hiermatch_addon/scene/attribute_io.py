@@ -10,7 +10,7 @@ import numpy as np
 
 from ...engine import Polygons
 from ..common.access import mesh_of
-from .mesh_io import corner_vertices, face_corner_counts
+from .mesh_io import corner_vertices, face_corner_counts, vertex_positions
 
 if TYPE_CHECKING:
     import bpy
@@ -208,9 +208,8 @@ def write_corner_normals(
         keeps normals relative to the surface.
     """
     own: Any = mesh
-    rest = np.empty(3 * len(mesh.vertices), np.float32)
+    rest = vertex_positions(mesh).ravel()
     if positions is not None:
-        mesh.vertices.foreach_get("co", rest)
         mesh.vertices.foreach_set("co", np.ascontiguousarray(positions, np.float32).ravel())
         mesh.update()
     own.normals_split_custom_set((normals if matrix is None else _unit(normals @ matrix)).tolist())

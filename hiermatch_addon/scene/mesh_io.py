@@ -34,6 +34,7 @@ __all__ = [
     "read_values",
     "rest_matrix",
     "topology",
+    "unedited",
     "vertex_positions",
     "without_other_vertices",
 ]
@@ -44,6 +45,9 @@ _MEMBERS: dict[str, tuple[str, type[np.generic], int]] = {
     "FLOAT_VECTOR": ("vector", np.float32, 3),
 }
 """For each type of attribute with numbers: what its values are called, their number type, and how many there are."""
+
+_topologies: list[dict[int, str]] = []
+"""What `topology` has found within each `unedited`, the innermost last."""
 
 _TOPOLOGY_MODIFIERS = frozenset(
     {
@@ -136,13 +140,23 @@ def rest_matrix(obj: bpy.types.Object) -> Matrix | None:
 
 def topology(mesh: bpy.types.Mesh) -> str:
     """Return a text that is the same as long as the vertices and faces of a mesh are numbered and connected alike."""
-    corners = corner_vertices(mesh)
-    starts = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_start", starts)
-    digest = hashlib.blake2b(len(mesh.vertices).to_bytes(8, "little"), digest_size=16)
-    for numbers in (starts, corners):
-        digest.update(numbers.astype("<i4").tobytes())
-    return digest.hexdigest()
+    found = _topologies[-1] if _topologies else {}
+    if mesh.session_uid not in found:
+        digest = hashlib.blake2b(len(mesh.vertices).to_bytes(8, "little"), digest_size=16)
+        for numbers in (_face_starts(mesh), corner_vertices(mesh)):
+            digest.update(numbers.astype("<i4").tobytes())
+        found[mesh.session_uid] = digest.hexdigest()
+    return found[mesh.session_uid]
+
+
+@contextmanager
+def unedited() -> Iterator[None]:
+    """Let the `topology` of each mesh be computed once at most, while no mesh is edited."""
+    _topologies.append({})
+    try:
+        yield
+    finally:
+        _topologies.pop()
 
 
 def position_digest(mesh: bpy.types.Mesh) -> str:
@@ -153,22 +167,38 @@ def position_digest(mesh: bpy.types.Mesh) -> str:
 def vertex_positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
     """Read the positions of a mesh's vertices, in the object's space, (n, 3)."""
     positions = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("co", positions)
+    if not _read_stored(mesh, "position", "vector", positions):
+        mesh.vertices.foreach_get("co", positions)
     return positions.reshape(-1, 3)
 
 
 def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Read the vertex of each corner of a mesh's faces, (l,)."""
     corners = np.empty(len(mesh.loops), np.int32)
-    mesh.loops.foreach_get("vertex_index", corners)
+    if not _read_stored(mesh, ".corner_vert", "value", corners):
+        mesh.loops.foreach_get("vertex_index", corners)
     return corners
+
+
+def _read_stored(mesh: bpy.types.Mesh, name: str, member: str, values: NDArray[Any]) -> bool:
+    """Read an attribute that Blender keeps a mesh itself in, which is 50 to 200 times faster; false in Edit Mode."""
+    attribute: Any = mesh.attributes.get(name)
+    if attribute is None or len(attribute.data) * (3 if member == "vector" else 1) != len(values):
+        return False
+    attribute.data.foreach_get(member, values)
+    return True
 
 
 def face_corner_counts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     """Read how many corners each face of a mesh has, (f,)."""
-    counts = np.empty(len(mesh.polygons), np.int32)
-    mesh.polygons.foreach_get("loop_total", counts)
-    return counts
+    return np.diff(_face_starts(mesh), append=np.int32(len(mesh.loops)))
+
+
+def _face_starts(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Read the first corner of each face of a mesh, (f,)."""
+    starts = np.empty(len(mesh.polygons), np.int32)
+    mesh.polygons.foreach_get("loop_start", starts)
+    return starts
 
 
 @contextmanager

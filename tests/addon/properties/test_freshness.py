@@ -10,6 +10,7 @@ import bpy
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.properties import freshness
+from hiermatch.hiermatch_addon.scene import mesh_io
 from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
 from tests.addon.scenes import QUICK, add_blob, add_pair, edit_twin, snapshot
@@ -179,6 +180,12 @@ class TestEdits:
         assert not stale()
         dense_pair[0].data.vertices[0].co.x += 1
         assert stale()
+
+    def test_the_faces_of_each_mesh_are_read_once(self, dense_pair, monkeypatch):
+        read, counted = mesh_io.corner_vertices, []
+        monkeypatch.setattr(mesh_io, "corner_vertices", lambda mesh: (counted.append(mesh), read(mesh))[1])
+        assert not stale()
+        assert counted == [obj.data for obj in dense_pair]
 
     def test_no_match_no_word(self):
         assert not stale()
