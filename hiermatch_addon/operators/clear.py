@@ -17,7 +17,7 @@ from ..properties.panel_state import picked, state_of
 from ..properties.steering_lists import sync_lists
 from ..scene.character import parts_of, side_of
 from ..scene.pair import check_writable, named_side, selected_meshes
-from ..storage.linked_matches import forget_linked, linked_prefixes
+from ..storage.linked_matches import forget_linked, has_linked, linked_prefixes
 from ..storage.writing import clear, is_marked, kept, prefixes
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         if not can_start(cls, context):
             return False
         meshes = (obj for obj in view_layer_of(context).objects if obj.type == "MESH")
-        if not any(is_marked(mesh_of(obj)) or linked_prefixes(obj) for obj in meshes):
+        if not any(is_marked(mesh_of(obj)) or has_linked(obj) for obj in meshes):
             cls.poll_message_set(translated("There is nothing here that HierMatch has written"))
             return False
         return True

@@ -111,40 +111,43 @@ def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
     Posing, moving and selecting objects edits no mesh and no collection, and turns no object over.
     """
-    if depsgraph.id_type_updated("COLLECTION"):
+    if depsgraph.id_type_updated("COLLECTION") or _is_noticed(depsgraph):
         _look_soon()
-        return
-    for update in depsgraph.updates:
-        changed = update.id
-        if isinstance(changed, bpy.types.Object):
-            noticed = _renamed(changed) or (update.is_updated_transform and _turned_over(changed))
-        else:
-            noticed = update.is_updated_geometry and isinstance(changed, bpy.types.Mesh) and _is_ours(changed)
-        if noticed:
-            _look_soon()
-            return
 
 
-def _is_ours(mesh: bpy.types.Mesh) -> bool:
-    """Return whether a mesh carries a match or landmarks."""
-    return is_marked(mesh) or has_landmarks(mesh)
+def _is_noticed(depsgraph: bpy.types.Depsgraph) -> bool:
+    """Return whether something has happened to meshes that carry a match or landmarks, or to their objects."""
+    updates = [(update, update.id) for update in depsgraph.updates]
+    if any(
+        update.is_updated_geometry and (is_marked(changed) or has_landmarks(changed))
+        for update, changed in updates
+        if isinstance(changed, bpy.types.Mesh)
+    ):
+        return True
+    ours = [(update, obj) for update, obj in updates if isinstance(obj, bpy.types.Object) and _is_matched(obj)]
+    moved = [obj for update, obj in ours if update.is_updated_transform]
+    return _is_renamed([obj for _, obj in ours]) or _is_turned_over(moved)
 
 
-def _renamed(obj: bpy.types.Object) -> bool:
-    """Return whether an object with a match may be one that a panel still calls by a name that nothing has any more."""
-    if obj.type != "MESH" or not is_marked(mesh_of(obj)):
-        return False
+def _is_matched(obj: bpy.types.Object) -> bool:
+    return obj.type == "MESH" and is_marked(mesh_of(obj))
+
+
+def _is_renamed(objects: list[bpy.types.Object]) -> bool:
+    """Return whether one of these may be one that a panel still calls by a name that nothing has any more."""
     summaries = [summary for scene in bpy.data.scenes if (summary := summary_of(scene)).key and not summary.stale]
     names = {name for summary in summaries for _, name in _sides(summary)}
-    parts = {part for name in names for part in name.split(" + ")}  # of a side of several objects
-    return obj.name not in names and any(p not in bpy.data.objects and p not in bpy.data.collections for p in parts)
-
-
-def _turned_over(obj: bpy.types.Object) -> bool:
-    """Return whether an object with a match was mirrored since it was matched, or may have been turned back."""
-    if obj.type != "MESH" or not is_marked(mesh_of(obj)):
+    if all(obj.name in names for obj in objects):
         return False
-    return is_mirrored(obj) or any(MIRRORED in summary_of(scene).stale for scene in bpy.data.scenes)
+    parts = {part for name in names for part in name.split(" + ")}  # of a side of several objects
+    return any(part not in bpy.data.objects and part not in bpy.data.collections for part in parts)
+
+
+def _is_turned_over(objects: list[bpy.types.Object]) -> bool:
+    """Return whether one of these was mirrored since it was matched, or may have been turned back."""
+    if not objects:
+        return False
+    return any(MIRRORED in summary_of(scene).stale for scene in bpy.data.scenes) or any(map(is_mirrored, objects))
 
 
 @persistent  # type: ignore[untyped-decorator]

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import bpy
@@ -45,13 +46,16 @@ class Half:
         The object, or the character of several.
     prefix : str
         What all names written start with.
-    kept : dict
-        Its part of the stored match.
     """
 
     obj: Side
     prefix: str
-    kept: dict[str, Any]
+
+    @cached_property
+    def kept(self) -> dict[str, Any]:
+        """Its part of the stored match, as it is when this is asked for first."""
+        found: dict[str, Any] = self._read.to_dict()
+        return found
 
     @property
     def name(self) -> str:
@@ -65,38 +69,63 @@ class Half:
 
     @property
     def key(self) -> str:
-        """What both sides of the match carry."""
-        return str(self.kept["key"])
+        """What both sides of the match carry; empty if the object carries none."""
+        return str(self._read.get("key", ""))
 
     @property
     def role(self) -> str:
         """What the object was matched as: "source" or "target"."""
-        return str(self.kept["role"])
+        return str(self._read["role"])
 
     @property
     def partner_role(self) -> str:
         """What the other object is."""
         return "target" if self.role == "source" else "source"
 
+    @property
+    def part_count(self) -> int:
+        """Of how many parts the object was when it was matched."""
+        return int(self._read.get("parts", 1))
+
+    @property
+    def part(self) -> int:
+        """Which of these it carries the match as, or its first part."""
+        return int(self._read.get("part", 0))
+
+    @property
+    def part_name(self) -> str:
+        """What that part was called."""
+        return str(self._read["part_name"])
+
+    def is_of(self, key: str, role: str) -> bool:
+        """Return whether it carries that side of a match."""
+        return self._read.get("key") == key and self.role == role
+
     def has_same_faces(self) -> bool:
         """Return whether stored vertex numbers still mean what they meant."""
-        return topology_of(self.obj) == self.kept["topology"]
+        return topology_of(self.obj) == self._read["topology"]
 
     def staleness(self) -> str:
         """Return a sentence that says why the match is out of date on this side; empty if it is not."""
         if not self.has_same_faces():
             change = "it has other vertices or faces"
-        elif (then := self.kept.get("positions")) not in (None, "", now := positions_of(self.obj)):
+        elif (then := self._read.get("positions")) not in (None, "", now := positions_of(self.obj)):
             change = MIRRORED if then.split()[0] == now.split()[0] else "its vertices were moved"
         else:
             return ""
         return f'The match is out of date: "{self.obj.name}" was edited since ({change}). Match again.'
 
+    @property
+    def _read(self) -> Any:  # noqa: ANN401 - Blender's group of properties
+        """What is kept, without a copy of it."""
+        first = parts_of(self.obj)[0]
+        return writing.kept(first, self.prefix) if first.type == "MESH" else {}
+
 
 def is_mirrored(obj: bpy.types.Object) -> bool:
     """Tell whether an object is mirrored and was not when it was matched, or the other way round."""
     for prefix in _prefixes(obj):
-        kept = _kept(obj, prefix)
+        kept = writing.kept(obj, prefix)
         then = str(kept.get("positions") or "").split()
         if then and (str(kept.get("part", 0)) in then[1:]) != obj.matrix_world.is_negative:
             return True
@@ -174,15 +203,9 @@ def find_carriers(objects: Iterable[bpy.types.Object], key: str, prefix: str, ro
 
     The parts of a character are one carrier; of copies of a part, the one that still has its name is taken.
     """
-    found = [
-        Half(obj, prefix, kept)
-        for obj in objects
-        if prefix in _prefixes(obj)
-        and (kept := writing.kept(obj, prefix))
-        and (kept["key"], kept["role"]) == (key, role)
-    ]
-    whole = [half for half in found if _part_count(half) == 1]
-    character = _assembled([half for half in found if _part_count(half) > 1])
+    found = [half for obj in objects if (half := Half(obj, prefix)).is_of(key, role)]
+    whole = [half for half in found if half.part_count == 1]
+    character = _assembled([half for half in found if half.part_count > 1])
     return whole if character is None else [*whole, character]
 
 
@@ -225,41 +248,35 @@ def find_common(one: Side, other: Side) -> list[tuple[Half, Half]]:
 
 def _half(side: Side, prefix: str) -> Half | None:
     """Return what all parts of a side carry of one match, in their order; None if they do not carry all of one."""
-    parts = parts_of(side)
-    halves = [Half(part, prefix, _kept(part, prefix)) for part in parts]
-    if not all(half.kept for half in halves) or any(_part_count(half) != len(parts) for half in halves):
+    halves = [Half(part, prefix) for part in parts_of(side)]
+    known = {(half.key, half.part_count, half.key and half.role) for half in halves}
+    if len(known) > 1 or not halves[0].key or [half.part for half in halves] != list(range(halves[0].part_count)):
         return None
-    known = {(half.key, half.role, int(half.kept.get("part", number)) - number) for number, half in enumerate(halves)}
-    return Half(side, prefix, halves[0].kept) if len(known) == 1 and {offset for *_, offset in known} == {0} else None
+    return Half(side, prefix)
 
 
 def _whole_half(side: Side, prefix: str) -> list[Half]:
     """Return what a side carries of a match, or the character that it is a part of; nothing if it carries none."""
-    half = Half(parts_of(side)[0], prefix, _kept(parts_of(side)[0], prefix))
-    if not half.kept:
+    half = Half(parts_of(side)[0], prefix)
+    if not half.key:
         return []
-    if _part_count(half) == 1:
+    if half.part_count == 1:
         return [half]
     character = _half(side, prefix)
     return [character] if character else find_carriers(bpy.data.objects, half.key, prefix, half.role)
-
-
-def _part_count(half: Half) -> int:
-    return int(half.kept.get("parts", 1))
 
 
 def _assembled(halves: list[Half]) -> Half | None:
     """Put the parts of a character together; None if one is missing."""
     chosen: dict[int, Half] = {}
     for half in halves:
-        number = int(half.kept["part"])
-        if number not in chosen or half.obj.name == half.kept["part_name"]:
-            chosen[number] = half
-    if not chosen or len(chosen) < _part_count(halves[0]):
+        if half.part not in chosen or half.obj.name == half.part_name:
+            chosen[half.part] = half
+    if not chosen or len(chosen) < halves[0].part_count:
         return None
     first = chosen[0]
     parts = tuple(part for number in sorted(chosen) for part in parts_of(chosen[number].obj))
-    return Half(Character(first.name, parts), first.prefix, first.kept)
+    return Half(Character(first.name, parts), first.prefix)
 
 
 def _prefixes(side: Side) -> tuple[str, ...]:
@@ -278,7 +295,3 @@ def moved_by_us(side: Side) -> Iterator[None]:
     for prefix in fresh:
         for part in parts_of(side):
             writing.change_kept(part, prefix, positions=positions_of(side))
-
-
-def _kept(obj: bpy.types.Object, prefix: str) -> dict[str, Any]:
-    return writing.kept(obj, prefix) if obj.type == "MESH" else {}

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["forget_linked", "keep_linked", "kept_linked", "linked_prefixes", "move_linked"]
+__all__ = ["forget_linked", "has_linked", "keep_linked", "kept_linked", "linked_prefixes", "move_linked"]
 
 _PROPERTY = "hiermatch_linked"
 """Custom property of the mesh of a target's first part: for each prefix a match, as an NPZ file would hold it."""
@@ -78,6 +78,11 @@ def move_linked(target: Side, before: str) -> None:
     if kept:
         mesh: Any = mesh_of(first)
         mesh[_PROPERTY] = kept
+
+
+def has_linked(obj: bpy.types.Object) -> bool:
+    """Return whether an object keeps matches alone, without reading these."""
+    return bool(group_of(mesh_of(obj), _PROPERTY))
 
 
 def linked_prefixes(obj: bpy.types.Object) -> tuple[str, ...]:

@@ -192,10 +192,12 @@ def prefixes(obj: bpy.types.Object) -> tuple[str, ...]:
     return tuple(records_of(mesh_of(obj)))
 
 
-def kept(obj: bpy.types.Object, prefix: str) -> dict[str, Any]:
-    """Return the plain data that was kept on an object with what was written with a prefix; empty if there is none."""
-    found = group_of(records_of(mesh_of(obj)).get(prefix, {}), "kept")
-    return found.to_dict() if found else {}
+def kept(obj: bpy.types.Object, prefix: str) -> Any:  # noqa: ANN401 - Blender's group of properties
+    """Return what was kept on an object with what was written with a prefix; empty if there is none.
+
+    It is Blender's own, to be read at once: `to_dict` takes all that is in it, which is much more than its few texts.
+    """
+    return group_of(records_of(mesh_of(obj)).get(prefix, {}), "kept")
 
 
 def clear(obj: bpy.types.Object, prefix: str) -> bool:
