@@ -21,7 +21,7 @@ from ..common.translated_text import translated
 from ..jobs.shown_preview import preview
 from .hover_data import hovered, pointed_at
 from .overlay_data import Drawing, preview_points, project
-from .overlay_io import read_drawing, signature
+from .overlay_io import drawn_objects, read_drawing, signature
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,6 +57,7 @@ class _Overlay:
         """Keep nothing of what was drawn: batches that are left until Blender ends outlive the graphics system."""
         self.pending: tuple[str, int] | None = None
         self.edited = False
+        self.drawn: frozenset[int] = frozenset()
         self._signature: tuple[object, ...] | None = None
         self._drawing = Drawing()
         self._points: list[tuple[Any, Any, float]] = []
@@ -75,7 +76,7 @@ class _Overlay:
             depsgraph = cast("Any", context.view_layer).depsgraph
             if depsgraph is None:  # not evaluated yet
                 return False
-            self._drawing = read_drawing(scene, depsgraph, self.pending)
+            self._drawing, self.drawn = read_drawing(scene, depsgraph, self.pending), drawn_objects(scene)
             self._signature, self.edited = found, False
             self._upload()
         return True
@@ -259,8 +260,9 @@ def _eye(context: bpy.types.Context) -> tuple[NDArray[np.float64], tuple[int, in
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Look again where the vertices are, if the shape of anything has changed."""
-    if any(update.is_updated_geometry for update in depsgraph.updates):
+    """Look again where the vertices are, if the shape of what is drawn has changed."""
+    updates: Any = depsgraph.updates
+    if any(update.is_updated_geometry and update.id.original.session_uid in _overlay.drawn for update in updates):
         _overlay.edited = True
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["read_drawing", "signature"]
+__all__ = ["drawn_objects", "read_drawing", "signature"]
 
 
 def signature(scene: bpy.types.Scene, pending: tuple[str, int] | None) -> tuple[object, ...] | None:
@@ -40,6 +40,11 @@ def signature(scene: bpy.types.Scene, pending: tuple[str, int] | None) -> tuple[
         *(part.visible_get() for side in pair for part in parts_of(side)),
         *(tuple(row) for side in pair for part in parts_of(side) for row in cast("Any", part.matrix_world)),
     )
+
+
+def drawn_objects(scene: bpy.types.Scene) -> frozenset[int]:
+    """Return by what numbers Blender knows the objects whose vertices are read for a scene."""
+    return frozenset(part.session_uid for side in steered_pair(scene) or () for part in parts_of(side))
 
 
 def read_drawing(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, pending: tuple[str, int] | None) -> Drawing:

@@ -19,13 +19,13 @@ from hiermatch.hiermatch_addon.overlay.overlay_data import (
     preview_points,
     project,
 )
-from hiermatch.hiermatch_addon.overlay.overlay_io import read_drawing, signature
+from hiermatch.hiermatch_addon.overlay.overlay_io import drawn_objects, read_drawing, signature
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks
 from hiermatch.hiermatch_addon.storage.views.colors import distortion_colors
 from mathutils import Matrix
 
 from tests.addon.conftest import ROOT
-from tests.addon.scenes import QUICK, add_pair
+from tests.addon.scenes import QUICK, add_blob, add_pair
 from tests.addon.test_rules import BLENDER, imported
 
 NONE = Marks(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, int))
@@ -208,6 +208,30 @@ class TestScene:
         bpy.context.scene.frame_set(2)
         assert drawn._overlay.edited  # noqa: SLF001
         assert not np.allclose(self.read().points[0].positions, before)
+
+    def test_meshes_are_read_again_if_they_are_edited_or_posed_but_not_if_others_are(self, pair):
+        bpy.ops.object.armature_add()
+        rig, other = bpy.context.object, add_blob("Other")
+        for obj in (pair[0], other):
+            obj.modifiers.new("Rig", "ARMATURE").object = rig
+            obj.vertex_groups.new(name="Bone").add(range(len(obj.data.vertices)), 1.0, "REPLACE")
+        bpy.context.view_layer.update()
+        drawn._overlay.drawn = drawn_objects(bpy.context.scene)  # noqa: SLF001
+
+        def is_read_again(change):
+            drawn._overlay.edited = False  # noqa: SLF001
+            change()
+            bpy.context.view_layer.update()
+            return drawn._overlay.edited  # noqa: SLF001
+
+        def edit(obj):
+            obj.data.vertices[0].co.x += 1
+            obj.data.update()
+
+        assert not is_read_again(lambda: edit(other))
+        assert is_read_again(lambda: edit(pair[1]))
+        assert is_read_again(lambda: setattr(rig.pose.bones["Bone"].location, "y", 5))
+        assert is_read_again(lambda: pair[1].shape_key_add(name="Basis"))
 
     def test_what_it_depends_on(self, pair):
         scene = bpy.context.scene
