@@ -190,9 +190,10 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
     """
     if isinstance(chosen, Character):
         return chosen
-    shown = [obj for obj in view_layer.objects if _is_part(obj, view_layer)]
+    shown = (obj for obj in view_layer.objects if _is_part(obj, view_layer))
     if isinstance(chosen, bpy.types.Collection):
-        parts = [obj for obj in shown if obj.name in chosen.all_objects and chosen.all_objects[obj.name] == obj]
+        members = set(chosen.all_objects)
+        parts = [obj for obj in shown if obj in members]
         if not parts:
             raise ObjectError(
                 f'The collection "{chosen.name}" holds no mesh with faces that is shown in this view layer. Show its '
@@ -200,7 +201,7 @@ def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -
             )
         return joined(chosen.name, parts)
     obj: Any = chosen
-    shown = [part for part in shown if FITTED_TO not in cast("Any", part)]
+    shown = (part for part in shown if FITTED_TO not in cast("Any", part))
     if obj.type == "ARMATURE":
         rigs = {obj, successor(obj)}
         parts = [part for part in shown if not rigs.isdisjoint(armatures_above(part))]

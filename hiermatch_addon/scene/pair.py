@@ -83,10 +83,16 @@ def named_object(name: str) -> bpy.types.Object:
     ObjectError
         If there is none.
     """
-    obj = bpy.data.objects.get(name)
+    obj = _called(name)
     if obj is None:
         raise ObjectError(f'There is no object called "{name}".')
     return obj
+
+
+def _called(name: str) -> bpy.types.Object | None:
+    """Return the object of that name, or of that full name, see `name_of`."""
+    every = bpy.data.objects
+    return every.get(name) or next((obj for obj in every if obj.name_full == name), None)
 
 
 def named_side(view_layer: bpy.types.ViewLayer, name: str) -> Side:
@@ -99,8 +105,9 @@ def named_side(view_layer: bpy.types.ViewLayer, name: str) -> Side:
     ObjectError
         If there is neither, or it holds no meshes.
     """
-    if name in bpy.data.objects:
-        return side_of(bpy.data.objects[name], view_layer)
+    obj = _called(name)
+    if obj is not None:
+        return side_of(obj, view_layer)
     if name in bpy.data.collections:
         return side_of(bpy.data.collections[name], view_layer)
     sides = [side_of(obj, view_layer) for obj in _listed_objects(name.split(_PLUS))]
@@ -116,21 +123,24 @@ def _listed_objects(pieces: Sequence[str]) -> list[bpy.types.Object]:
         If there is none of a name.
     """
     for count in range(len(pieces), 0, -1):
-        obj = bpy.data.objects.get(_PLUS.join(pieces[:count]))
+        obj = _called(_PLUS.join(pieces[:count]))
         if obj is not None:
             return [obj, *_listed_objects(pieces[count:])]
     return [named_object(pieces[0])] if pieces else []
 
 
 def name_of(view_layer: bpy.types.ViewLayer, side: Side) -> str:
-    """Return the name by which `named_side` finds a side again."""
+    """Return the name by which `named_side` finds a side again.
+
+    Of objects that have one name, those of other files are called by their full names: "Cube [other.blend]".
+    """
     if isinstance(side, Character):
         try:
             same = named_side(view_layer, side.name) == side
         except ObjectError:
             same = False
-        return side.name if same else _PLUS.join(part.name for part in side.parts)
-    return side.name
+        return side.name if same else _PLUS.join(name_of(view_layer, part) for part in side.parts)
+    return side.name if bpy.data.objects.get(side.name) == side else side.name_full
 
 
 def selected_meshes(context: bpy.types.Context, without: Side | None = None) -> list[bpy.types.Object]:
@@ -326,7 +336,7 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
     _check_type(obj)
     if writable:
         check_writable(obj)
-    if view_layer.objects.get(obj.name) != obj:
+    if obj not in list(view_layer.objects):  # by its name there may be another one, of another file
         raise ObjectError(
             f'"{obj.name}" is not in the view layer "{view_layer.name}". Link it to the scene, or enable its '
             "collection in the Outliner."

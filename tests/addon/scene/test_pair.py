@@ -6,7 +6,8 @@ from __future__ import annotations
 import bpy
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.scene.pair import check_pair, find_pair, selected_targets
+from hiermatch.hiermatch_addon.scene.character import joined, side_of
+from hiermatch.hiermatch_addon.scene.pair import check_pair, find_pair, name_of, named_side, selected_targets
 
 from tests.addon.scenes import add_blob, add_pair
 
@@ -245,6 +246,41 @@ class TestCheck:
         bpy.context.collection.objects.link(borrowed)
         with pytest.raises(ObjectError, match='"Borrowed" is linked'):
             check((own, borrowed))
+
+
+class TestSameNames:
+    """A character that was linked, and a local one that has the same name."""
+
+    @pytest.fixture
+    def both(self, pair, tmp_path):
+        path = str(tmp_path / "library.blend")
+        bpy.data.libraries.write(path, {pair[0]})
+        with bpy.data.libraries.load(path, link=True) as (_, into):
+            into.objects = ["Source"]
+        linked = into.objects[0]
+        bpy.context.collection.objects.link(linked)
+        bpy.context.view_layer.update()
+        return pair[0], linked
+
+    def test_each_is_in_the_view_layer(self, both, pair):
+        check(pair)
+        check_pair(bpy.context.view_layer, both[1], pair[1], writes=(False, True))
+
+    def test_each_is_found_again_by_its_name(self, both):
+        layer = bpy.context.view_layer
+        names = [name_of(layer, obj) for obj in both]
+        assert names == ["Source", "Source [library.blend]"]
+        assert [named_side(layer, name) for name in names] == list(both)
+        side = joined("Both", both)
+        assert named_side(layer, name_of(layer, side)).parts == side.parts
+
+    def test_a_collection_may_hold_both(self, both):
+        collection = bpy.data.collections.new("Both")
+        bpy.context.scene.collection.children.link(collection)
+        for obj in both:
+            collection.objects.link(obj)
+        bpy.context.view_layer.update()
+        assert set(side_of(collection, bpy.context.view_layer).parts) == set(both)
 
 
 def test_what_shows_a_collection_is_to_be_made_editable(pair):
