@@ -15,13 +15,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..common.access import view_layer_of
-
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
-
-    import bpy
 
     from ..jobs.job_operator import Job
 
@@ -108,10 +104,10 @@ class Console:
                 _write(_ERRORS, text)
 
 
-def drive(job: Job, context: bpy.types.Context, console: Console) -> None:
+def drive(job: Job, console: Console) -> None:
     """Drive a job until everything is computed."""
     try:
-        while not job.advance(view_layer_of(context), _SLICE):
+        while not job.advance(_SLICE):
             console.progress(job.progress.fraction, job.progress.label)
     except BaseException:
         job.close()

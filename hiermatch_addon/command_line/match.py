@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..common.access import view_layer_of
 from ..jobs.match_job import MatchJob, job_options
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
@@ -168,8 +167,8 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         source, target = load_pair(parsed, report)
         context = bpy.context
         job = MatchJob(context, source, target, settings)
-        drive(job, context, console)
-        outcome = job.finish(view_layer_of(context))
+        drive(job, console)
+        outcome = job.finish()
         names = (outcome.source, outcome.target)
         remember(state_of(context).summary, outcome.stored, names, options.prefix, outcome.seconds)
         refresh(cast("bpy.types.Scene", context.scene))

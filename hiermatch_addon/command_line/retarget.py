@@ -127,7 +127,7 @@ def run_transfers(
         source, target = pair if choose is None else choose(options, pair)
         context = bpy.context
         job = start(options, (source, target), settings)
-        drive(job, context, console)
+        drive(job, console)
         carried = job.finish(context)
         outcome = carried[0].outcome
         if outcome is not None:

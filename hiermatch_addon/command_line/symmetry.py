@@ -78,9 +78,9 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         if job is None:
             _tell_map(parsed, report, obj, _found(obj, console))
         else:
-            drive(job, context, console)
+            drive(job, console)
             _tell_map(parsed, report, obj, job.found)
-            made = job.finish(context)
+            made = job.finish()
             report.carried.append({"target": obj.name, "done": [made.done]})
             report.add_notes(made.notes)
         save_outputs(parsed, report, obj, console, clean=False)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import bpy
 
 from ...engine import HierMatchError
-from ..common.access import view_layer_of, window_manager_of
+from ..common.access import window_manager_of
 from ..common.redraw import redraw_sidebars, redraw_views
 from ..common.translated_text import translated
 from ..properties.panel_state import progress_of
@@ -48,7 +48,7 @@ class Job(Protocol):
     def work_beside(self) -> None:
         """Let the engine compute in another process, where there can be one."""
 
-    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
+    def advance(self, seconds: float) -> bool:
         """Work for about so long, but for one step at least; return whether everything is computed."""
 
     def close(self) -> None:
@@ -93,7 +93,7 @@ class JobOperator(_Operator):
         try:
             job = self._start(context)
             try:
-                while not job.advance(view_layer_of(context), _SLICE):
+                while not job.advance(_SLICE):
                     manager.progress_update(min(99, int(100 * job.progress.fraction)))  # 100 breaks the cursor
                 return self._finish(context, job)
             finally:
@@ -131,7 +131,7 @@ class JobOperator(_Operator):
             return {"PASS_THROUGH"}
         elsewhere = time.perf_counter() - self._worked
         try:
-            if not self._job.advance(view_layer_of(context), min(max(_SLICE, elsewhere), _LONGEST_SLICE)):
+            if not self._job.advance(min(max(_SLICE, elsewhere), _LONGEST_SLICE)):
                 self._show_progress(context)
                 self._worked = time.perf_counter()
                 return {"PASS_THROUGH"}

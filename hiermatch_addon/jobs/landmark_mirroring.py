@@ -80,7 +80,7 @@ class MirrorJob(SteppedJob):
         self.notes: list[str] = []
         super().__init__()
 
-    def finish(self, view_layer: bpy.types.ViewLayer) -> list[Landmark]:
+    def finish(self) -> list[Landmark]:
         """Add the mirror images as landmarks, except for those of landmarks in the middle or that are there already.
 
         Raises
@@ -95,7 +95,7 @@ class MirrorJob(SteppedJob):
                 raise ObjectError(f'"{reference.name}" was deleted or edited meanwhile. No landmark was added.')
             objects.append(obj)
         source, target = objects
-        check_pair(view_layer, source, target)
+        check_pair(None, source, target)
         taken = {vertex for landmark in find_landmarks(source, target) for vertex in [("s", landmark.source)]}
         taken |= {("t", landmark.target) for landmark in find_landmarks(source, target)}
         pairs: list[tuple[int, int]] = []

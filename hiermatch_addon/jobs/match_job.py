@@ -252,8 +252,8 @@ class MatchJob(SteppedJob):
         self._prepared: _Prepared | None = None
         super().__init__()
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._objects(view_layer)
+    def _check(self) -> None:
+        self._objects()
 
     def _all_steps(self) -> Steps[None]:
         """Match, and prepare what is to be written."""
@@ -359,7 +359,7 @@ class MatchJob(SteppedJob):
         found = None if self._found is None else self._found.answer.quality
         return None if found is None else Quality.of(found)
 
-    def finish(self, view_layer: bpy.types.ViewLayer) -> Outcome:
+    def finish(self) -> Outcome:
         """Write the result on both objects.
 
         Raises
@@ -369,7 +369,7 @@ class MatchJob(SteppedJob):
         """
         if self._found is None or self._prepared is None:
             raise RuntimeError("The match has not come to its end yet.")
-        objects = self._objects(view_layer)
+        objects = self._unchanged_objects()
         for obj, read in zip(objects, self._topologies, strict=True):
             if topology_of(obj) != read:
                 raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
@@ -381,7 +381,7 @@ class MatchJob(SteppedJob):
         writing.write(list(zip(objects, prepared.contents, strict=True)), prefix)
         return Outcome(*names, prepared.result, prepared.maps, stored, time.perf_counter() - self._start)
 
-    def stored(self, view_layer: bpy.types.ViewLayer) -> StoredMatch:
+    def stored(self) -> StoredMatch:
         """Collect what is to be kept of the match, without writing it; it must have come to its end.
 
         Raises
@@ -391,7 +391,7 @@ class MatchJob(SteppedJob):
         """
         if self._found is None:
             raise RuntimeError("The match has not come to its end yet.")
-        source, target = self._objects(view_layer)
+        source, target = self._unchanged_objects()
         return self._stored(self._found, (source.name, target.name))
 
     def _stored(self, found: _Found, names: tuple[str, str]) -> StoredMatch:
@@ -428,18 +428,23 @@ class MatchJob(SteppedJob):
         advice = advice_on(quality, names, self._meshes, halves=self._halves, hung=self._hung)
         return [advice] if advice else []
 
-    def _objects(self, view_layer: bpy.types.ViewLayer) -> list[Side]:
-        """Look the objects up again and make sure that they are still what was read."""
+    def _unchanged_objects(self) -> list[Side]:
+        """Look the objects up again and make sure that they can still be written to."""
+        objects = self._objects()
+        try:
+            check_pair(None, *objects, writes=self._writes)
+        except ObjectError as error:
+            raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
+        return objects
+
+    def _objects(self) -> list[Side]:
+        """Look the objects up again and make sure that they still have the vertices that were read."""
         objects: list[Side] = []
         for reference in self._references:
             found = reference.find()
             if found is None:
                 raise ObjectError(f'"{reference.name}" was deleted while it was being matched. Nothing was written.')
             objects.append(found)
-        try:
-            check_pair(view_layer, *objects, writes=self._writes)
-        except ObjectError as error:
-            raise ObjectError(f"The match was ended, because the objects changed: {error}") from error
         for obj, mesh in zip(objects, self._meshes, strict=True):
             if vertex_count(obj) != mesh.vertex_count:
                 raise ObjectError(

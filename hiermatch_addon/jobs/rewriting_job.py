@@ -7,7 +7,6 @@ import time
 from abc import abstractmethod
 from typing import TYPE_CHECKING
 
-from ..common.access import view_layer_of
 from ..scene.character import SideReference
 from ..scene.pair import check_pair
 from ..storage.answer_writing import write_answer
@@ -15,8 +14,6 @@ from ..storage.halves import find_again
 from .stepped_job import SteppedJob
 
 if TYPE_CHECKING:
-    import bpy
-
     from ..storage.contents import Content
     from ..storage.halves import Half
     from ..storage.stored_match import StoredMatch
@@ -61,7 +58,7 @@ class RewritingJob(SteppedJob):
         self.seconds = 0.0
         super().__init__()
 
-    def finish(self, context: bpy.types.Context) -> StoredMatch:
+    def finish(self) -> StoredMatch:
         """Write the match on both objects in place of the one before, and return what is kept of it.
 
         Raises
@@ -71,7 +68,8 @@ class RewritingJob(SteppedJob):
         """
         if self._prepared is None:
             raise RuntimeError("The work has not come to its end yet.")
-        source, target = self._halves(view_layer_of(context))
+        source, target = self._halves()
+        check_pair(None, source.obj, target.obj)
         for half in (source, target):
             self._check_half(half)
         self.names = (source.obj.name, target.obj.name)
@@ -83,11 +81,9 @@ class RewritingJob(SteppedJob):
     def _check_half(self, half: Half) -> None:
         """Make sure that the mesh is still what was read, before it is written to."""
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._halves(view_layer)
+    def _check(self) -> None:
+        self._halves()
 
-    def _halves(self, view_layer: bpy.types.ViewLayer) -> tuple[Half, Half]:
+    def _halves(self) -> tuple[Half, Half]:
         """Look the objects up again and make sure that they still carry the match."""
-        halves = find_again(self._references, self.prefix, self.key)
-        check_pair(view_layer, halves[0].obj, halves[1].obj)
-        return halves
+        return find_again(self._references, self.prefix, self.key)

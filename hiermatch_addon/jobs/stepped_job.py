@@ -11,8 +11,6 @@ from typing import TYPE_CHECKING, Any
 from ...engine import Background, Progress
 
 if TYPE_CHECKING:
-    import bpy
-
     from ...engine import Preview, Steps
 
 __all__ = ["SteppedJob"]
@@ -44,7 +42,7 @@ class SteppedJob(ABC):
         """Let the engine compute in a process beside Blender, where there can be one: call it before `advance`."""
         self._background = Background()
 
-    def advance(self, view_layer: bpy.types.ViewLayer, seconds: float) -> bool:
+    def advance(self, seconds: float) -> bool:
         """Work for about so long, but for one step at least; return whether everything is computed.
 
         While all that is to be done is to wait for another process, this returns at once.
@@ -54,7 +52,7 @@ class SteppedJob(ABC):
         HierMatchError
             If the engine or a change of the objects ends the work.
         """
-        self._check(view_layer)
+        self._check()
         end = time.perf_counter() + seconds
         with nullcontext() if self._background is None else self._background.used():
             while not self._done:
@@ -75,5 +73,5 @@ class SteppedJob(ABC):
     def _all_steps(self) -> Steps[Any]:
         """Do the work; what comes of it is kept on the job."""
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:  # noqa: B027 - few jobs need no check
+    def _check(self) -> None:  # noqa: B027 - few jobs need no check
         """Make sure that the objects are still what was read."""

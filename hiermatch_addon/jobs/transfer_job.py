@@ -250,7 +250,6 @@ class TransferJob(SteppedJob):
             self._legs.append(leg)
         wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
         self._rig: SourceRig | None = read_rig(source) if wanted else None
-        self._view_layer = view_layer
         self._known = known_shapes(shape_memory(context))
         super().__init__()
 
@@ -272,7 +271,10 @@ class TransferJob(SteppedJob):
         if not self._done:
             raise RuntimeError("The work has not come to its end yet.")
         view_layer = view_layer_of(context)
-        source, targets = self._objects(view_layer)
+        source, targets = self._objects()
+        check_side(None, source, writable=False)
+        for target in targets:
+            check_side(view_layer, target, writable=self._writes)
         for obj, state in ((source, self._source_state), *zip(targets, (leg.state for leg in self._legs), strict=True)):
             if _state(obj) != state:
                 raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
@@ -297,19 +299,19 @@ class TransferJob(SteppedJob):
         if not is_own(target):
             return None
         if not is_own(source):
-            self._keep_linked(context, leg, source, target)
+            self._keep_linked(leg, source, target)
             return None
         if leg.match is not None:
             if len(self._legs) > 1:
                 return None
-            outcome = leg.match.finish(view_layer_of(context))
+            outcome = leg.match.finish()
         if leg.better is not None:
             keep_refined(context, source, target, leg.prefix, leg.better)
         return outcome
 
-    def _keep_linked(self, context: bpy.types.Context, leg: _Leg, source: Side, target: Side) -> None:
+    def _keep_linked(self, leg: _Leg, source: Side, target: Side) -> None:
         """Keep a match with a source of another file on the target, if it is new or has become better."""
-        stored = leg.kept if leg.match is None else leg.match.stored(view_layer_of(context))
+        stored = leg.kept if leg.match is None else leg.match.stored()
         if stored is None or (leg.match is None and leg.better is None):
             return
         maps = leg.stored if leg.better is None else leg.better
@@ -317,9 +319,8 @@ class TransferJob(SteppedJob):
             prefix = leg.prefix or self._options.match.prefix
             keep_linked(source, target, stored if leg.better is None else stored.as_refined(), maps, prefix)
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._objects(view_layer)
-        self._view_layer = view_layer
+    def _check(self) -> None:
+        self._objects()
 
     def _all_steps(self) -> Steps[None]:
         """Go all ways, one after another."""
@@ -331,7 +332,7 @@ class TransferJob(SteppedJob):
         """Find the way to one target, and compute what is carried there."""
         begin = 0.0
         if leg.match is not None:
-            while not leg.match.advance(self._view_layer, 0.0):
+            while not leg.match.advance(0.0):
                 yield Progress(_MATCHED * leg.match.progress.fraction, leg.match.progress.label)
             leg.stored, leg.quality, begin = leg.match.maps, leg.match.quality, _MATCHED
         if leg.stored is None:
@@ -416,13 +417,12 @@ class TransferJob(SteppedJob):
         pair = MapPair(leg.source, leg.mesh, fitted.source_to_target, fitted.target_to_source)
         return Passage(pair, fitted, rig.names)
 
-    def _objects(self, view_layer: bpy.types.ViewLayer) -> tuple[Side, list[Side]]:
-        """Look the objects up again and make sure that they are still what was read."""
+    def _objects(self) -> tuple[Side, list[Side]]:
+        """Look the objects up again."""
         found: list[Side] = []
         for reference in (self._source, *(leg.reference for leg in self._legs)):
             side = reference.find()
             if side is None:
                 raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
-            check_side(view_layer, side, writable=bool(found) and self._writes)  # the source comes first
             found.append(side)
         return found[0], found[1:]

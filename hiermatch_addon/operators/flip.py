@@ -72,7 +72,7 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
 
     def _finish(self, context: bpy.types.Context, job: FlipJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
-        stored = job.finish(context)
+        stored = job.finish()
         summary = state_of(context).summary
         same = (summary.prefix, summary.key) == (job.prefix, job.key)
         remember(summary, stored, job.names, job.prefix, summary.seconds if same else 0.0)

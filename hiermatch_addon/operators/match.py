@@ -90,7 +90,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
 
     def _finish(self, context: bpy.types.Context, job: MatchJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
-        outcome = job.finish(view_layer_of(context))
+        outcome = job.finish()
         if self._named:
             pick_named(cast("bpy.types.Scene", context.scene), self.source, self.target)
         remember(

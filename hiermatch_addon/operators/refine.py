@@ -59,7 +59,7 @@ class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
 
     def _finish(self, context: bpy.types.Context, job: RefineJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
-        stored = job.finish(context)
+        stored = job.finish()
         remember(state_of(context).summary, stored, job.names, job.prefix, job.seconds)
         refresh(cast("bpy.types.Scene", context.scene))
         if job.moved > _FAR:

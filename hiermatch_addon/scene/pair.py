@@ -279,9 +279,9 @@ def _only(candidates: Sequence[Side], role: str) -> Side:
 
 
 def check_pair(
-    view_layer: bpy.types.ViewLayer, source: Side, target: Side, *, writes: tuple[bool, bool] = (True, True)
+    view_layer: bpy.types.ViewLayer | None, source: Side, target: Side, *, writes: tuple[bool, bool] = (True, True)
 ) -> None:
-    """Make sure that two sides can be matched, and those written to that it `writes`.
+    """Make sure that two sides can be matched, and those written to that it `writes`; see `check_object`.
 
     Raises
     ------
@@ -305,8 +305,8 @@ def check_pair(
                 )
 
 
-def check_side(view_layer: bpy.types.ViewLayer, side: Side, *, writable: bool = True) -> None:
-    """Make sure that all parts of a side can be read and, if they are to be `writable`, written to.
+def check_side(view_layer: bpy.types.ViewLayer | None, side: Side, *, writable: bool = True) -> None:
+    """Make sure that all parts of a side can be read and, if they are to be `writable`, written to; see `check_object`.
 
     Raises
     ------
@@ -325,8 +325,11 @@ def check_side(view_layer: bpy.types.ViewLayer, side: Side, *, writable: bool = 
         seen[mesh] = part.name
 
 
-def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writable: bool = True) -> None:
+def check_object(view_layer: bpy.types.ViewLayer | None, obj: bpy.types.Object, *, writable: bool = True) -> None:
     """Make sure that an object can be read and, if it is to be `writable`, written to.
+
+    To begin with, it has to be shown in a view layer.  At the end of work, for which None stands, it may be hidden, or
+    in another scene: who looks at something else meanwhile shall not lose the work.
 
     Raises
     ------
@@ -336,6 +339,20 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
     _check_type(obj)
     if writable:
         check_writable(obj)
+    if view_layer is not None:
+        _check_shown(view_layer, obj)
+    elif not obj.users_scene:
+        raise ObjectError(f'"{obj.name}" is in no scene any more.')
+    check_mode(obj)
+    if not len(mesh_of(obj).polygons):
+        raise ObjectError(f'"{obj.name}" has no faces. A surface is needed, not only vertices or edges.')
+    scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
+    flat = [axis for axis, length in zip("XYZ", scale, strict=True) if not length > 0]
+    if flat:
+        raise ObjectError(f'"{obj.name}" has a scale of zero on {" and ".join(flat)}. Set its scale to 1 (Alt+S).')
+
+
+def _check_shown(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> None:
     if obj not in list(view_layer.objects):  # by its name there may be another one, of another file
         raise ObjectError(
             f'"{obj.name}" is not in the view layer "{view_layer.name}". Link it to the scene, or enable its '
@@ -352,13 +369,6 @@ def check_object(view_layer: bpy.types.ViewLayer, obj: bpy.types.Object, *, writ
             f'"{obj.name}" is not shown: its collection is hidden or disabled in viewports, or it is outside of Local '
             "View. Show its collection in the Outliner, or leave Local View (View > Local View)."
         )
-    check_mode(obj)
-    if not len(mesh_of(obj).polygons):
-        raise ObjectError(f'"{obj.name}" has no faces. A surface is needed, not only vertices or edges.')
-    scale = np.linalg.norm(np.array(obj.matrix_world)[:3, :3], axis=0)
-    flat = [axis for axis, length in zip("XYZ", scale, strict=True) if not length > 0]
-    if flat:
-        raise ObjectError(f'"{obj.name}" has a scale of zero on {" and ".join(flat)}. Set its scale to 1 (Alt+S).')
 
 
 def lacking_meshes(view_layer: bpy.types.ViewLayer) -> str:

@@ -99,7 +99,7 @@ class SymmetriseJob(SteppedJob):
         self.seconds = 0.0
         super().__init__()
 
-    def finish(self, context: bpy.types.Context) -> TransferReport:
+    def finish(self) -> TransferReport:
         """Write everything.
 
         Raises
@@ -107,15 +107,16 @@ class SymmetriseJob(SteppedJob):
         ObjectError
             If the object has changed since it was read.
         """
-        obj = self._object(view_layer_of(context))
+        obj = self._object()
+        check_object(None, obj)
         if _state(obj) != self._state:
             raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
         done = [part.write(obj) for part in self._parts if part.names]
         self.seconds = time.perf_counter() - self._start
         return TransferReport(", ".join(done), tuple(filter(None, self._notes)))
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._object(view_layer)
+    def _check(self) -> None:
+        self._object()
 
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
@@ -129,11 +130,10 @@ class SymmetriseJob(SteppedJob):
             if part.names:
                 part.compute(symmetriser)
 
-    def _object(self, view_layer: bpy.types.ViewLayer) -> bpy.types.Object:
+    def _object(self) -> bpy.types.Object:
         """Look the object up again."""
         for obj in bpy.data.objects:
             if obj.session_uid == self._uid:
-                check_object(view_layer, obj)
                 return obj
         raise ObjectError(f'"{self._name}" was deleted meanwhile. Nothing was written.')
 

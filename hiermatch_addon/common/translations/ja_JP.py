@@ -2136,6 +2136,7 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」はメッシュではなく{1}タイプです。メッシュオブジェクトを選ぶか、変換してください（オブジェクト"
         " > 変換 > メッシュ）。"
     ),
+    '"{0}" is in no scene any more.': "「{0}」はもうどのシーンにもありません。",
     '"{0}" is not in the view layer "{1}". Link it to the scene, or enable its collection in the Outliner.': (
         "「{0}」はビューレイヤー「{1}」にありません。シーンにリンクするか、アウトライナーでコレクションを有効"
         "にしてください。"

@@ -1762,6 +1762,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" is not a mesh but of type {1}. Choose a mesh object, or convert it (Object > Convert > Mesh).': (
         "“{0}”不是网格，而是 {1} 类型。请选择网格物体，或将其转换（物体 > 转换 > 网格）。"
     ),
+    '"{0}" is in no scene any more.': "“{0}”已不在任何场景中。",
     '"{0}" is not in the view layer "{1}". Link it to the scene, or enable its collection in the Outliner.': (
         "“{0}”不在视图层“{1}”中。请将其链接到场景，或在大纲视图中启用它的集合。"
     ),

@@ -57,9 +57,9 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
         self.object = obj.name
         return SymmetriseJob(context, obj, symmetrise_settings(self))
 
-    def _finish(self, context: bpy.types.Context, job: SymmetriseJob) -> set[OperatorReturnItems]:
+    def _finish(self, _context: bpy.types.Context, job: SymmetriseJob) -> set[OperatorReturnItems]:
         """Write and report."""
-        report = job.finish(context)
+        report = job.finish()
         for note in report.notes:
             self.report({"WARNING"}, translated(note))
         self.report({"INFO"}, translated(f'Made "{self.object}" symmetric in {job.seconds:.1f} s: {report.done}'))

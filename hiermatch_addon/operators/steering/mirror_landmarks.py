@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ...common.access import view_layer_of
 from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.job_operator import JobOperator
@@ -50,7 +49,7 @@ class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
 
     def _finish(self, context: bpy.types.Context, job: MirrorJob) -> set[OperatorReturnItems]:
         """Add the landmarks and report."""
-        added = job.finish(view_layer_of(context))
+        added = job.finish()
         sync_lists(cast("bpy.types.Scene", context.scene))
         if job.left_out:
             self.report(

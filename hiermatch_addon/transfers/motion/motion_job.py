@@ -12,7 +12,6 @@ import numpy as np
 from mathutils import Matrix
 
 from ....engine import Motion, MotionSettings, Progress, transfer_motion_steps, within
-from ...common.access import view_layer_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted, listed
 from ...jobs.stepped_job import SteppedJob
@@ -124,7 +123,7 @@ class MotionJob(SteppedJob):
             named.setdefault(two_rigs(source, target, written=True)[1], target)
         self._source, self._targets = SideReference.of(rig_of(source)), [SideReference.of(rig) for rig in named]
         scene = cast("bpy.types.Scene", context.scene)
-        self._scene, self._view_layer = scene.name, view_layer_of(context)
+        self._scene = scene.name
         waiting = []
         for rig, target in named.items():
             if rows_of(scene, rig_of(source), rig):
@@ -251,15 +250,14 @@ class MotionJob(SteppedJob):
             raise ObjectError(f'The action "{name}" was deleted meanwhile. Nothing was written.')
         return action
 
-    def _check(self, view_layer: bpy.types.ViewLayer) -> None:
-        self._view_layer = view_layer
+    def _check(self) -> None:
         self._rigs()
 
     def _all_steps(self) -> Steps[None]:
         """Pair what is not paired, read each motion once, and compute it for each target."""
         begin = 0.0
         if self._pairing is not None:
-            while not self._pairing.advance(self._view_layer, 0.0):
+            while not self._pairing.advance(0.0):
                 yield Progress(_PAIRED * self._pairing.progress.fraction, self._pairing.progress.label)
             begin = _PAIRED
         pairings = [self._pairing_of(link) for link in self._targets]

@@ -47,7 +47,7 @@ def is_gone(pid):
 def advance(job, until=lambda: False):
     """Advance as the timer of a window does, to the end or until something holds."""
     end = time.monotonic() + PATIENCE
-    while not job.advance(bpy.context.view_layer, 0.05) and not until():
+    while not job.advance(0.05) and not until():
         assert time.monotonic() < end
         time.sleep(0.005)
 
@@ -68,7 +68,7 @@ def test_a_match_writes_the_same(dense_pair):
     job.work_beside()
     seen = []
     advance(job, lambda: seen.append((job.progress.fraction, job.preview)))
-    outcome = job.finish(bpy.context.view_layer)
+    outcome = job.finish()
     assert_previewed([(fraction, found) for fraction, found in seen if found is not None], dense_pair, outcome.result)
     for obj, before in zip(dense_pair, written, strict=True):
         for name in MAP_ATTRIBUTES:
@@ -137,7 +137,7 @@ def test_loading_a_file_ends_the_job_and_then_the_process():
     job, pid = begun(add_pair())
     bpy.ops.wm.read_homefile(use_empty=True)
     with pytest.raises(HierMatchError, match="was deleted"):
-        job.advance(bpy.context.view_layer, 0.05)
+        job.advance(0.05)
     job.close()  # as the operator does
     assert is_gone(pid)
 
@@ -150,10 +150,10 @@ def test_undoing_leaves_it_at_work():
     bpy.ops.ed.undo_push(message="Empty")
     job = MatchJob(bpy.context, *pair, JobOptions(settings=MatchSettings(**QUICK)))
     job.work_beside()
-    job.advance(bpy.context.view_layer, 0.0)
+    job.advance(0.0)
     bpy.ops.ed.undo()
     advance(job)
-    assert job.finish(bpy.context.view_layer).result.source_points.positions.shape == (QUICK["points"], 3)
+    assert job.finish().result.source_points.positions.shape == (QUICK["points"], 3)
 
 
 def test_a_process_that_was_killed_is_said_in_a_sentence():

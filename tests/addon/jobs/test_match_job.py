@@ -36,13 +36,13 @@ def start(pair):
 
 def advance(job, seconds=0.0):
     """Advance by so much time; by one step if that is none."""
-    return job.advance(bpy.context.view_layer, seconds)
+    return job.advance(seconds)
 
 
 def drain(job):
     while not advance(job, 0.01):
         pass
-    return job.finish(bpy.context.view_layer)
+    return job.finish()
 
 
 def test_nothing_is_written_before_the_end(job):
@@ -54,14 +54,14 @@ def test_nothing_is_written_before_the_end(job):
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] < fractions[-1] <= 1
     assert job.progress.label
-    job.finish(bpy.context.view_layer)
+    job.finish()
     assert snapshot() != before
 
 
 def test_a_job_that_is_not_done_cannot_be_finished(job):
     before = snapshot()
     with pytest.raises(RuntimeError, match="not come to its end"):
-        job.finish(bpy.context.view_layer)
+        job.finish()
     assert snapshot() == before
 
 
@@ -107,28 +107,57 @@ def subdivide(pair):
 
 CHANGES = {
     "deleted": (delete, '"Target" was deleted'),
-    "edited": (edit, '"Target" is in Edit Mode'),
-    "hidden": (lambda pair: pair[1].hide_set(state=True), '"Target" is hidden'),
     "file": (load, "was deleted"),
     "subdivided": (subdivide, "another number of vertices"),
+}
+
+CHANGES_AT_THE_END = CHANGES | {
+    "edited": (edit, '"Target" is in Edit Mode'),
     "shared": (lambda pair: setattr(pair[1], "data", pair[0].data), "share the same mesh data"),
-    "unlinked": (lambda pair: bpy.context.collection.objects.unlink(pair[1]), "not in the view layer"),
+    "unlinked": (lambda pair: bpy.context.collection.objects.unlink(pair[1]), '"Target" is in no scene'),
 }
 
 
-@pytest.mark.parametrize("at_the_end", [False, True])
-@pytest.mark.parametrize("change", CHANGES)
+def hide_its_collection(obj):
+    collection = bpy.data.collections.new("Apart")
+    bpy.context.scene.collection.children.link(collection)
+    collection.objects.link(obj)
+    bpy.context.collection.objects.unlink(obj)
+    bpy.context.view_layer.layer_collection.children["Apart"].exclude = True
+
+
+LOOKS_ELSEWHERE = {
+    "hidden": lambda pair: pair[1].hide_set(state=True),
+    "hidden collection": lambda pair: hide_its_collection(pair[0]),
+    "another scene": lambda _pair: setattr(bpy.context.window, "scene", bpy.data.scenes.new("Other")),
+}
+
+
+@pytest.mark.parametrize("change", LOOKS_ELSEWHERE)
+def test_looking_at_something_else_loses_nothing(pair, change):
+    job = start(pair)
+    advance(job)
+    LOOKS_ELSEWHERE[change](pair)
+    bpy.context.view_layer.update()
+    outcome = drain(job)
+    assert (outcome.source, outcome.target) == ("Source", "Target")
+    assert all(len(weights_of(obj)) == QUICK["points"] for obj in pair)
+
+
+@pytest.mark.parametrize(
+    ("change", "at_the_end"),
+    [*((change, False) for change in CHANGES), *((change, True) for change in CHANGES_AT_THE_END)],
+)
 def test_changes_end_the_job_with_a_sentence(pair, change, at_the_end):
-    alter, message = CHANGES[change]
+    alter, message = CHANGES_AT_THE_END[change]
     job = start(pair)
     while not advance(job, 1.0 if at_the_end else 0.0) and at_the_end:
         pass
     alter(pair)
     bpy.context.view_layer.update()
     before = snapshot()
-    go_on = job.finish if at_the_end else job.advance
     with pytest.raises(ObjectError, match=message):
-        go_on(bpy.context.view_layer, *([] if at_the_end else [0.0]))
+        job.finish() if at_the_end else job.advance(0.0)
     assert snapshot() == before
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
@@ -141,7 +170,7 @@ def test_other_faces_of_the_same_vertices_are_noticed_at_the_end(pair):
     pair[1].data.flip_normals()
     before = snapshot()
     with pytest.raises(ObjectError, match='The faces of "Target" changed'):
-        job.finish(bpy.context.view_layer)
+        job.finish()
     assert snapshot() == before
 
 
@@ -192,7 +221,7 @@ def test_the_timer_drives_it_to_the_end(operator):
 
 def test_it_shows_how_far_it_is(operator):
     operator._job._steps = (Progress(share, "Weighing") for share in (0.25, 0.5))  # noqa: SLF001
-    operator._job.advance = lambda _layer, _seconds: setattr(operator._job, "progress", next(operator._job._steps))  # noqa: SLF001
+    operator._job.advance = lambda _seconds: setattr(operator._job, "progress", next(operator._job._steps))  # noqa: SLF001
     for share in (0.25, 0.5):
         assert operator.send("TIMER") == {"PASS_THROUGH"}
         shown = bpy.context.window_manager.hiermatch
@@ -228,7 +257,7 @@ def test_what_is_left_of_an_escape_that_something_else_took_passes(operator, val
 @pytest.mark.parametrize("way", ["escape", "button"])
 def test_cancelling_changes_nothing(operator, way):
     before = snapshot()
-    operator._job.advance = lambda _layer, _seconds: False  # a long match  # noqa: SLF001
+    operator._job.advance = lambda _seconds: False  # a long match  # noqa: SLF001
     operator.send("TIMER")
     if way == "button":
         bpy.context.window_manager.hiermatch.cancel = True
@@ -244,7 +273,7 @@ def test_a_change_ends_the_run_with_a_message(operator, pair):
 
 
 def test_a_bug_ends_the_run_and_is_raised(operator):
-    def broken(_layer, _seconds):
+    def broken(_seconds):
         raise ZeroDivisionError
 
     operator._job.advance = broken  # noqa: SLF001

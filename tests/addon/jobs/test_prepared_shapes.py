@@ -33,9 +33,9 @@ def prepared(monkeypatch):
 
 def matched(source, target):
     job = MatchJob(bpy.context, source, target, JobOptions(settings=MatchSettings(**QUICK)))
-    while not job.advance(bpy.context.view_layer, 1.0):
+    while not job.advance(1.0):
         pass
-    return job.finish(bpy.context.view_layer)
+    return job.finish()
 
 
 def test_one_source_is_prepared_once_for_several_targets(prepared):

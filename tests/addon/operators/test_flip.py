@@ -495,7 +495,7 @@ class TestInSteps:
         return FlipJob(bpy.context, find_half(dense_pair[0]))
 
     def advance(self, job, seconds=0.0):
-        return job.advance(bpy.context.view_layer, seconds)
+        return job.advance(seconds)
 
     def test_nothing_is_written_before_the_end(self, job):
         before = snapshot()
@@ -505,13 +505,13 @@ class TestInSteps:
         assert fractions == sorted(fractions)
         assert len(fractions) > 20
         assert snapshot() == before
-        assert job.finish(bpy.context).chosen == 1
+        assert job.finish().chosen == 1
         assert snapshot() != before
 
     def test_the_points_lie_on_the_map(self, job, dense_pair):
         while not self.advance(job):
             pass
-        stored = job.finish(bpy.context)
+        stored = job.finish()
         maps = StoredMaps.read(*dense_pair, map_name("HM"))
         depsgraph = bpy.context.evaluated_depsgraph_get()
         source, target = (read_mesh(obj, depsgraph, use_modifiers=False) for obj in dense_pair)
@@ -525,8 +525,15 @@ class TestInSteps:
         self.advance(job)
         job.close()
         with pytest.raises(RuntimeError, match="not come to its end"):
-            job.finish(bpy.context)
+            job.finish()
         assert snapshot() == before
+
+    def test_looking_at_something_else_does_not(self, job, dense_pair):
+        self.advance(job)
+        dense_pair[0].hide_set(state=True)
+        while not self.advance(job, 1.0):
+            pass
+        assert job.finish().chosen == 1
 
     def test_clearing_meanwhile_ends_it(self, job):
         self.advance(job)
@@ -545,4 +552,4 @@ class TestInSteps:
         bpy.ops.mesh.subdivide()
         bpy.ops.object.mode_set(mode="OBJECT")
         with pytest.raises(ObjectError, match="other vertices or faces"):
-            job.finish(bpy.context)
+            job.finish()

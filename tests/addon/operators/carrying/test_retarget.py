@@ -331,7 +331,7 @@ def test_a_change_while_it_runs_ends_it_with_nothing_written(pair, change):
     target.vertex_groups.clear()
     options = TransferOptions(job_options(bpy.context.scene.hiermatch))
     job = TransferJob(bpy.context, source, [target], lambda: [WeightTransfer(WeightSettings())], options)
-    while not job.advance(bpy.context.view_layer, 1.0):
+    while not job.advance(1.0):
         pass
     if change == "edit":
         target.data.vertices[0].co.x += 1
@@ -346,6 +346,19 @@ def test_a_change_while_it_runs_ends_it_with_nothing_written(pair, change):
     job.close()
 
 
+def test_what_is_hidden_while_it_runs_does_not_end_it(pair):
+    source, target = pair
+    options = TransferOptions(job_options(bpy.context.scene.hiermatch))
+    job = TransferJob(bpy.context, source, [target], lambda: [WeightTransfer(WeightSettings())], options)
+    for obj in pair:
+        obj.hide_set(state=True)
+    while not job.advance(0.01):
+        pass
+    target.hide_set(state=False)
+    job.finish(bpy.context)
+    assert {group.name for group in source.vertex_groups} <= {group.name for group in target.vertex_groups}
+
+
 @pytest.mark.computes_anew
 def test_its_progress_never_goes_back(pair):
     source, target = pair
@@ -353,7 +366,7 @@ def test_its_progress_never_goes_back(pair):
     options = TransferOptions(job_options(bpy.context.scene.hiermatch), prefix="HM")
     job = TransferJob(bpy.context, source, [target], lambda: [WeightTransfer(WeightSettings())], options)
     fractions = []
-    while not job.advance(bpy.context.view_layer, 0.0):
+    while not job.advance(0.0):
         fractions.append(job.progress.fraction)
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] <= fractions[-1] <= 1

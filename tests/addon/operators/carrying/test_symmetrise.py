@@ -228,15 +228,15 @@ def test_an_edit_meanwhile_ends_it(body):
     obj, rest = body
     add_legs(obj, rest)
     job = SymmetriseJob(bpy.context, obj, SymmetriseSettings())
-    while not job.advance(bpy.context.view_layer, 0):
+    while not job.advance(0):
         pass
     obj.data.vertices[0].co.x += 1
     with pytest.raises(ObjectError, match="edited meanwhile"):
-        job.finish(bpy.context)
+        job.finish()
     obj.vertex_groups.clear()
     bpy.data.objects.remove(obj)
     with pytest.raises(ObjectError, match="deleted meanwhile"):
-        job.advance(bpy.context.view_layer, 0)
+        job.advance(0)
 
 
 def test_names_of_sides():
