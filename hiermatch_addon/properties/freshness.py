@@ -15,7 +15,7 @@ from bpy.app.handlers import persistent
 from ..common.access import mesh_of
 from ..common.redraw import redraw_sidebars
 from ..scene.mesh_io import unedited
-from ..storage.halves import MIRRORED, find_carriers, is_mirrored
+from ..storage.halves import MIRRORED, find_carriers, is_mirrored, meant
 from ..storage.landmark_layer import has_landmarks
 from ..storage.writing import is_marked
 from .panel_state import summary_of
@@ -47,8 +47,9 @@ def refresh(scene: bpy.types.Scene) -> None:
         for role, name in _sides(summary):
             carriers = find_carriers(scene.objects, summary.key, summary.prefix, role)
             stale, lost = stale or _staleness(scene, carriers, name), lost or not carriers
-            if len(carriers) == 1 and carriers[0].obj.name != name:
-                setattr(summary, "source" if summary.source == name else "target", carriers[0].obj.name)
+            half = meant(carriers, name)
+            if half is not None and half.obj.name != name:
+                setattr(summary, "source" if summary.source == name else "target", half.obj.name)
         hidden = not is_of_picked(scene)
     for field, value in (("stale", stale), ("lost", lost), ("hidden", hidden)):
         if getattr(summary, field) != value:
@@ -77,7 +78,7 @@ def _staleness(scene: bpy.types.Scene, carriers: list[Half], name: str) -> str:
         return f'The match is out of date: "{name}" was deleted.'
     if not carriers:
         return f'The match is out of date: "{name}" was cleared or matched anew. Match again.'
-    return next((half for half in carriers if half.obj.name == name), carriers[0]).staleness()
+    return (meant(carriers, name) or carriers[0]).staleness()
 
 
 def start_watching() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, side_of
 from ..scene.pair import is_own
-from ..storage.halves import find_carriers, find_common
+from ..storage.halves import find_carriers, find_common, meant
 from ..storage.landmarks import find_landmarks
 from ..storage.stored_match import StoredMatch
 from .panel_state import picked, summary_of
@@ -59,11 +59,10 @@ def _steered(scene: bpy.types.Scene, chosen: bpy.types.ID | None, number: int) -
     called = scene.objects.get(name)
     if called is not None and find_carriers([called], summary.key, summary.prefix, role):
         return called
-    found = find_carriers(scene.objects, summary.key, summary.prefix, role)
-    named = next((half.obj for half in found if half.obj.name == name), None)
-    if named is None and len(found) == 1:  # it was renamed since
-        return found[0].obj
-    return called if named is None and called is not None and called.type == "MESH" else named
+    half = meant(find_carriers(scene.objects, summary.key, summary.prefix, role), name)
+    if half is None:
+        return called if called is not None and called.type == "MESH" else None
+    return half.obj
 
 
 def picked_side(scene: bpy.types.Scene, chosen: bpy.types.ID) -> Side | None:

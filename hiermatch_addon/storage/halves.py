@@ -16,7 +16,7 @@ from . import writing
 from .linked_matches import move_linked
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from ..scene.character import Side, SideReference
 
@@ -29,6 +29,7 @@ __all__ = [
     "find_half",
     "find_keyed",
     "is_mirrored",
+    "meant",
     "moved_by_us",
 ]
 
@@ -191,11 +192,21 @@ def find_keyed(view_layer: bpy.types.ViewLayer, key: str, prefix: str, role: str
             f'The {role} of this match, "{name}", was deleted, or renamed and cleared, or is not in the view layer '
             f'"{view_layer.name}". Bring it back, or match again.'
         )
-    named = [half for half in carriers if half.obj.name == name] if len(carriers) > 1 else carriers
-    if not named:
+    half = meant(carriers, name)
+    if half is None:
         names = ", ".join(f'"{half.obj.name}"' for half in carriers)
         raise ObjectError(f"Several objects are copies of the {role} of this match: {names}. Match the two again.")
-    return named[0]
+    return half
+
+
+def meant(carriers: Sequence[Half], name: str) -> Half | None:
+    """Return which of what carries one side of a match is meant; None if there is no telling.
+
+    That is the one that has the name of what was matched; else the only one, or any of those that have the same mesh.
+    """
+    named = [half for half in carriers if half.obj.name == name]
+    meshes = {tuple(part.data for part in parts_of(half.obj)) for half in carriers}
+    return named[0] if named else carriers[0] if len(meshes) == 1 else None
 
 
 def find_carriers(objects: Iterable[bpy.types.Object], key: str, prefix: str, role: str) -> list[Half]:

@@ -187,6 +187,19 @@ class TestEdits:
         assert not stale()
         assert counted == [obj.data for obj in dense_pair]
 
+    def test_a_renamed_object_with_a_linked_duplicate(self, dense_pair):
+        """Either carries the match."""
+        state = bpy.context.scene.hiermatch
+        state.source = state.target = None
+        twin = dense_pair[0].copy()
+        bpy.context.collection.objects.link(twin)
+        dense_pair[0].name = "Hero"
+        assert not stale()
+        assert summary().source in ("Hero", twin.name)
+        assert bpy.ops.hiermatch.show(view="MATCH") == {"FINISHED"}
+        assert bpy.ops.hiermatch.flip() == {"FINISHED"}
+        assert not stale()
+
     def test_no_match_no_word(self):
         assert not stale()
         summary().stale = "something"
