@@ -36,9 +36,11 @@ __all__ = [
     "corner_ranges",
     "edge_ranges",
     "face_ranges",
+    "forget_order",
     "is_of",
     "joined",
     "joined_mesh",
+    "keep_order",
     "own_positions",
     "parts_of",
     "positions_of",
@@ -55,6 +57,9 @@ __all__ = [
 
 FITTED_TO: Final = "hiermatch_body"
 """Custom property of a fitted copy of clothes: the name of the body that it was fitted to, of which it is no part."""
+
+_MATCHED_AS: Final = "hiermatch_part"
+"""Custom property of the mesh of a part: what the part was called when it was matched, by which parts stay ordered."""
 
 _SUCCESSOR: Final = "hiermatch_successor"
 """Custom property of an armature: the one that has taken its place, as a pointer that follows renaming."""
@@ -166,9 +171,31 @@ def character_of(side: Side) -> Character:
 
 
 def joined(name: str, parts: Iterable[bpy.types.Object]) -> Side:
-    """Make a side of mesh objects: a character, ordered by their names, or the only object itself."""
-    ordered = tuple(sorted(dict.fromkeys(parts), key=lambda part: part.name))
+    """Make a side of mesh objects: a character, or the only object itself.
+
+    Parts are ordered by their names; those that are matched by what they were called then, so that the numbers of their
+    vertices go on to mean the same when they are renamed.
+    """
+    ordered = tuple(sorted(dict.fromkeys(parts), key=_order))
     return ordered[0] if len(ordered) == 1 else Character(name, ordered)
+
+
+def _order(part: bpy.types.Object) -> tuple[str, str]:
+    owner: Any = part.data or part
+    return owner.get(_MATCHED_AS, part.name), part.name
+
+
+def keep_order(part: bpy.types.Object) -> None:
+    """Let a part keep its place among others when it is renamed."""
+    mesh: Any = mesh_of(part)
+    if _MATCHED_AS not in mesh:
+        mesh[_MATCHED_AS] = part.name
+
+
+def forget_order(mesh: bpy.types.Mesh) -> None:
+    """Undo `keep_order`."""
+    owner: Any = mesh
+    owner.pop(_MATCHED_AS, None)
 
 
 def side_of(chosen: bpy.types.ID | Character, view_layer: bpy.types.ViewLayer) -> Side:

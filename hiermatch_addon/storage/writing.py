@@ -20,7 +20,7 @@ from ..common.access import group_of, mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import not_ours
 from ..scene import mesh_io
-from ..scene.character import parts_of, vertex_ranges
+from ..scene.character import forget_order, keep_order, parts_of, vertex_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -248,6 +248,8 @@ def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Acti
     _take_names(obj, _kinds(content))
     _set_records(mesh, {}, MARKER + _TEMPORARY)
     _set_records(mesh, records)
+    if "part" in content.keep:
+        keep_order(obj)
 
 
 def _records_with(obj: bpy.types.Object, content: Content, prefix: str, active: _Active) -> dict[str, Any]:
@@ -300,6 +302,8 @@ def _set_records(mesh: bpy.types.Mesh, records: dict[str, Any], name: str = MARK
         properties[name] = records
     elif name in properties:
         del properties[name]
+        if name == MARKER:
+            forget_order(mesh)
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,12 @@ from __future__ import annotations
 from functools import partial
 from timeit import repeat
 
-from hiermatch.hiermatch_addon.storage.halves import find_carriers, find_half, is_mirrored
+import bpy
+from hiermatch.hiermatch_addon.scene.character import joined, parts_of
+from hiermatch.hiermatch_addon.storage.halves import find_carriers, find_common, find_half, is_mirrored
 from hiermatch.hiermatch_addon.storage.writing import MARKER
+
+from tests.addon.scenes import QUICK, add_blob
 
 
 def shortest(call):
@@ -22,3 +26,21 @@ def test_the_points_of_a_match_are_not_read_to_find_it(dense_pair):
     whole = shortest(source.data[MARKER].to_dict)
     assert shortest(partial(is_mirrored, source)) < whole / 3
     assert shortest(partial(find_carriers, [source], find_half(source).key, "HM", "source")) < whole / 3
+
+
+def test_renamed_parts_of_a_character_keep_their_order_and_their_match():
+    body, hair, target = (add_blob(name) for name in ("Body", "Hair", "Target"))
+    hair.location.z, target.location.x = 2, 4
+    bpy.context.view_layer.update()
+    bpy.ops.hiermatch.match(source="Body + Hair", target="Target", **QUICK)
+    hair.name = "A Wig"
+    side = joined("Hero", [body, hair])
+    assert parts_of(side) == (body, hair)
+    ((half, partner),) = find_common(side, target)
+    assert (half.role, partner.role) == ("source", "target")
+    assert not half.staleness()
+    bpy.ops.hiermatch.match(source="Body + A Wig", target="Target", **QUICK)
+    assert parts_of(joined("Hero", [body, hair])) == (body, hair)
+    bpy.ops.hiermatch.clear(object="Body + A Wig")
+    assert parts_of(joined("Hero", [body, hair])) == (hair, body)
+    assert not body.data.keys()
