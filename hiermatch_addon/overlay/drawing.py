@@ -21,7 +21,7 @@ from ..common.translated_text import translated
 from ..jobs.shown_preview import preview
 from .hover_data import hovered, pointed_at
 from .overlay_data import Drawing, preview_points, project
-from .overlay_io import drawn_objects, read_drawing, signature
+from .overlay_io import drawn_objects, read_drawing, settings, signature
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -56,8 +56,9 @@ class _Overlay:
     def forget(self) -> None:
         """Keep nothing of what was drawn: batches that are left until Blender ends outlive the graphics system."""
         self.pending: tuple[str, int] | None = None
-        self.edited = False
+        self.changed = self.edited = False
         self.drawn: frozenset[int] = frozenset()
+        self._settings: tuple[object, ...] | None = None
         self._signature: tuple[object, ...] | None = None
         self._drawing = Drawing()
         self._points: list[tuple[Any, Any, float]] = []
@@ -68,16 +69,21 @@ class _Overlay:
 
     def update(self, context: bpy.types.Context) -> bool:
         """Bring what is drawn up to date; return whether there is anything to draw."""
-        scene = cast("bpy.types.Scene", context.scene)
-        found = signature(scene, self.pending)
-        if found is None:
+        scene, shown = cast("bpy.types.Scene", context.scene), (self._settings, self._signature)
+        self._settings = settings(scene, cast("bpy.types.ViewLayer", context.view_layer), self.pending)
+        if self._settings is None:
             return False
-        if found != self._signature or self.edited:
+        if self.changed or self.edited or self._settings != shown[0]:  # else the objects need not be looked up
+            self._signature, self.changed = signature(scene), False
+        if self._signature is None:
+            return False
+        if (self._settings, self._signature) != shown or self.edited:
             depsgraph = cast("Any", context.view_layer).depsgraph
             if depsgraph is None:  # not evaluated yet
+                self.edited = True
                 return False
             self._drawing, self.drawn = read_drawing(scene, depsgraph, self.pending), drawn_objects(scene)
-            self._signature, self.edited = found, False
+            self.edited = False
             self._upload()
         return True
 
@@ -260,7 +266,8 @@ def _eye(context: bpy.types.Context) -> tuple[NDArray[np.float64], tuple[int, in
 
 @persistent  # type: ignore[untyped-decorator]
 def _on_update(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Look again where the vertices are, if the shape of what is drawn has changed."""
+    """Look the objects up again, and where their vertices are if the shape of what is drawn has changed."""
+    _overlay.changed = True
     updates: Any = depsgraph.updates
     if any(update.is_updated_geometry and update.id.original.session_uid in _overlay.drawn for update in updates):
         _overlay.edited = True

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ..common.access import mesh_of
+from ..properties.panel_state import picked
 from ..properties.steering_lists import steered_pair
 from ..scene.character import parts_of
 from ..scene.mesh_io import vertex_positions
@@ -19,16 +20,22 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["drawn_objects", "read_drawing", "signature"]
+__all__ = ["drawn_objects", "read_drawing", "settings", "signature"]
 
 
-def signature(scene: bpy.types.Scene, pending: tuple[str, int] | None) -> tuple[object, ...] | None:
-    """Return what is the same as long as the same has to be drawn, but for edits of the meshes; None if nothing has."""
+def settings(
+    scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, pending: tuple[str, int] | None
+) -> tuple[object, ...] | None:
+    """Return what is the same as long as the same is to be shown of the same objects; None if nothing is."""
     owner: Any = scene
-    steering, pair = owner.hiermatch_steering, steered_pair(scene)
-    if pair is None or not steering.show_overlay:
+    steering, state = owner.hiermatch_steering, owner.hiermatch
+    if not steering.show_overlay:
         return None
     return (
+        scene.session_uid,
+        view_layer.name,
+        *(None if chosen is None else chosen.session_uid for chosen in picked(state)),
+        *(getattr(state.summary, name) for name in ("key", "prefix", "source", "target", "swapped")),
         steering.revision,
         steering.show_points,
         steering.show_lines,
@@ -36,6 +43,15 @@ def signature(scene: bpy.types.Scene, pending: tuple[str, int] | None) -> tuple[
         steering.pair_index,
         steering.landmark_index,
         pending,
+    )
+
+
+def signature(scene: bpy.types.Scene) -> tuple[object, ...] | None:
+    """Return what is the same as long as the same objects lie in the same places; None if there are none."""
+    pair = steered_pair(scene)
+    if pair is None:
+        return None
+    return (
         *(part.session_uid for side in pair for part in parts_of(side)),
         *(part.visible_get() for side in pair for part in parts_of(side)),
         *(tuple(row) for side in pair for part in parts_of(side) for row in cast("Any", part.matrix_world)),

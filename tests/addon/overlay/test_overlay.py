@@ -19,7 +19,7 @@ from hiermatch.hiermatch_addon.overlay.overlay_data import (
     preview_points,
     project,
 )
-from hiermatch.hiermatch_addon.overlay.overlay_io import drawn_objects, read_drawing, signature
+from hiermatch.hiermatch_addon.overlay.overlay_io import drawn_objects, read_drawing, settings, signature
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks
 from hiermatch.hiermatch_addon.storage.views.colors import distortion_colors
 from mathutils import Matrix
@@ -236,12 +236,16 @@ class TestScene:
     def test_what_it_depends_on(self, pair):
         scene = bpy.context.scene
         steering = scene.hiermatch_steering
-        seen = [signature(scene, None)]
-        assert signature(scene, None) == seen[0]
+
+        def read(pending=None):
+            return settings(scene, bpy.context.view_layer, pending), signature(scene)
+
+        seen = [read()]
+        assert read() == seen[0]
 
         def changed():
             bpy.context.view_layer.update()
-            seen.append(signature(scene, None))
+            seen.append(read())
             assert seen[-1] not in seen[:-1]
 
         pair[0].location.x += 1
@@ -255,9 +259,42 @@ class TestScene:
         pair[0].hide_set(state=True)
         changed()
         assert not self.read().points
-        assert signature(scene, ("Source", 3)) != seen[-1]
+        assert read(("Source", 3)) != seen[-1]
         steering.show_overlay = False
-        assert signature(scene, None) is None
+        assert read()[0] is None
+
+    def test_objects_are_looked_up_again_only_if_something_has_changed(self, pair, monkeypatch):
+        """Viewports are drawn at each move of the mouse, and a picked rig or collection may have thousands of parts."""
+        looked, uploaded = [], []
+        monkeypatch.setattr(drawn, "signature", lambda scene: (looked.append(scene), signature(scene))[1])
+        overlay = drawn._overlay  # noqa: SLF001
+        monkeypatch.setattr(overlay, "_upload", lambda: uploaded.append(1), raising=False)
+        bpy.context.view_layer.update()
+
+        def count(change):
+            change()
+            bpy.context.view_layer.update()
+            looked.clear()
+            uploaded.clear()
+            for _ in range(3):
+                assert overlay.update(bpy.context)
+            return len(looked), len(uploaded)
+
+        def undo():
+            pair[0].location.x += 1
+            bpy.ops.ed.undo_push(message="Moved")
+            count(lambda: None)
+            bpy.ops.ed.undo()
+
+        bpy.ops.ed.undo_push(message="Before")
+        assert count(lambda: None) == (1, 1)
+        assert count(lambda: None) == (0, 0)
+        assert count(lambda: setattr(pair[1].location, "x", 7)) == (1, 1)
+        assert count(lambda: add_blob("Other")) == (1, 0)
+        assert count(lambda: pair[0].hide_set(state=True)) == (1, 1)
+        assert count(lambda: pair[0].hide_set(state=False)) == (1, 1)
+        bpy.ops.ed.undo_push(message="Before")
+        assert count(undo) == (1, 1)
 
     def test_a_place_that_waits(self, pair):
         found = self.read(("Target", 7)).points[-1]
