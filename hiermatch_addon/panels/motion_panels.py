@@ -30,6 +30,9 @@ _SCORE_WIDTH = 1.7
 _LETTERS_OF_BUTTONS = 7
 """For how many letters of a name score, lock, cross and the scroll bar leave no room in either half of a row."""
 
+_LETTERS_OF_MARGINS = 2
+"""For how many letters less there is room in a label than in a field, as seen in a window of Blender 5.2."""
+
 
 class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
     """The list of pairs of bones."""
@@ -54,7 +57,7 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
             if len(bone) <= letters:
                 row.prop(item, name, text="", emboss=False)
             else:  # Blender would leave its end out; below the list it can be chosen anew
-                row.label(text=shortened(bone, letters), translate=False)
+                row.label(text=shortened(bone, max(4, letters - _LETTERS_OF_MARGINS)), translate=False)
         score = row.row()
         score.ui_units_x = _SCORE_WIDTH  # else it takes as much room as a name
         score.label(text=f"{item.score:.2f}", translate=False)
