@@ -89,9 +89,6 @@ def _alike_closely(part: float) -> float:
     return float(_CLOSE + _CLOSE_SPREAD * logit((part - _LEAST_CLOSENESS) / (1 - _LEAST_CLOSENESS)))
 
 
-FAILED = least_likeness(0.16)
-"""Likeness below which surfaces without a border are not matched rightly as they are: one in six is right."""
-
 EVEN = least_likeness(0.5)
 """Likeness from which on a map is right rather than not."""
 

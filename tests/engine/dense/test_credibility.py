@@ -7,7 +7,6 @@ from engine.dense.credibility import (
     CREDIBLE,
     DOUBTFUL,
     EVEN,
-    FAILED,
     LITTLE_RISE,
     MUCH_ALIKE,
     RISE,
@@ -61,9 +60,9 @@ def test_what_deforms_less_is_more_alike():
 
 
 def test_the_levels_of_decisions_are_probabilities():
-    assert [probability_right(level) for level in (FAILED, EVEN, CREDIBLE)] == pytest.approx([0.16, 0.5, 0.965])
+    assert [probability_right(level) for level in (EVEN, CREDIBLE)] == pytest.approx([0.5, 0.965])
     assert [closeness(level) for level in (MUCH_ALIKE, ALL_ALIKE)] == pytest.approx([0.981, 0.99945])
-    assert FAILED < EVEN < CREDIBLE < MUCH_ALIKE < ALL_ALIKE
+    assert EVEN < CREDIBLE < MUCH_ALIKE < ALL_ALIKE
 
 
 @pytest.mark.parametrize("confidence", [0.1, 0.3, 0.9])
@@ -105,7 +104,7 @@ def test_a_map_is_right_by_its_likeness_or_by_what_it_leaves_in_place():
     assert probability_right(EVEN, 0.5) == pytest.approx(0.75)
     assert probability_right(-20.0, 0.9) == pytest.approx(0.9)
     assert is_likely(-20.0, 0.5)
-    assert not is_likely(FAILED, 0.1)
+    assert not is_likely(EVEN - 1, 0.1)
     assert is_placed(0.5)
     assert not is_placed(0.49)
     assert is_likely(None)
@@ -113,7 +112,7 @@ def test_a_map_is_right_by_its_likeness_or_by_what_it_leaves_in_place():
 
 def test_a_map_has_failed_if_it_is_not_trusted_and_landmarks_do_not_lead_it():
     assert has_failed(EVEN, DOUBTFUL - 0.01)
-    assert not has_failed(FAILED - 5, DOUBTFUL)
+    assert not has_failed(EVEN - 6, DOUBTFUL)
     assert not has_failed(None, 0.0)
 
 
@@ -141,6 +140,6 @@ def test_hope_ends_where_neither_can_become_likely():
     assert may_reach(EVEN, EVEN, 0.0)
     assert may_reach(EVEN, -20.0, probability_in_place(0.66))
     assert not may_reach(CREDIBLE, -20.0, 1.0)
-    assert not may_reach(EVEN, FAILED - 5, probability_in_place(0.5))
+    assert not may_reach(EVEN, EVEN - 6, probability_in_place(0.5))
     assert may_reach(EVEN, EVEN - RISE, 0.0)
     assert not may_reach(EVEN, EVEN - RISE, 0.0, LITTLE_RISE)
