@@ -318,8 +318,11 @@ class TestSwap:
 
     def test_what_is_said_of_one_of_them_is_said_of_the_same_one(self, dense_pair):
         source = dense_pair[0]
-        answers, note = kept(source, "HM")["answers"], "The {} had 2 small holes: they were closed for matching."
-        missing = "parts of one shape seem to be missing on the other."
+        answers = kept(source, "HM")["answers"].to_dict()
+        note, missing = (
+            "The {} had 2 small holes: they were closed for matching.",
+            "parts of one shape seem to be missing on the other.",
+        )
         sentence = f"Only 60% of the target is reached: {missing}"
         answers["direct"]["quality"] |= {"coverage": 0.6, "source_coverage": 1.0, "sentence": sentence}
         change_kept(source, "HM", answers=answers, notes=note.format("target"))
