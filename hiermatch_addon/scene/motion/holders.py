@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What moves bones and armatures beside curves of their own: constraints that act, drivers, parents, deltas."""
+"""Influences on bones and armatures beside curves of their own: constraints that act, drivers, parents, deltas."""
 
 from __future__ import annotations
 

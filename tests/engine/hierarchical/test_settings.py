@@ -51,7 +51,7 @@ def test_fewer_candidates_than_coarse_points_are_refused():
 
 
 def test_a_bijective_coarse_match_has_as_many_candidates_as_points_whatever_is_set():
-    MatchSettings(constraint="bijective", coarse_points=12, coarse_candidates=11)
+    assert MatchSettings(constraint="bijective", coarse_points=12, coarse_candidates=11).coarse_candidates == 11
 
 
 def test_coarse_points_and_candidates_are_not_compared_where_there_is_no_coarse_step():
