@@ -30,7 +30,7 @@ from ..shapes.prepared_surface import PreparedSurface
 from ..shapes.shape import Shape, check_surface, left_out_of
 from ..shapes.shape_preparation import Wanted, finer_shapes, prepared_shapes_steps
 from .components.extended_maps import WholeMap, whole_maps_steps
-from .components.masked_maps import piece_of, with_pieces_only
+from .components.masked_maps import left_out_beyond, piece_of, with_pieces_only
 from .credibility import vertex_credibility
 from .dense_hypotheses import SparseStart
 from .dense_registration import EIGENPAIRS, RegisteredPair, registered_pair_steps
@@ -153,9 +153,8 @@ def _shape_steps(
     """Prepare what is covered and not excluded of a mesh, so that points lie on it, or return a shape as it is."""
     if isinstance(surface, Shape):
         return surface
-    if covered is not None:
-        left_out = ~covered if left_out is None else left_out | ~covered
-    shape = yield from within(Shape.steps(surface, name, excluded=left_out), 0.0, 0.7)
+    excluded = left_out_beyond(covered, left_out)
+    shape = yield from within(Shape.steps(surface, name, excluded=excluded), 0.0, 0.7)
     return (yield from within(with_limbs_steps(shape, name, points.nearest_vertices), 0.7, 1.0))
 
 

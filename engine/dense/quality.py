@@ -221,11 +221,12 @@ def with_alternatives(quality: MatchQuality, count: int) -> MatchQuality:
     return _worded(replace(quality, alternatives=count))
 
 
-def of_covered_part(quality: MatchQuality, share: float, *, of_source: bool) -> MatchQuality:
-    """Say of a map, too, that it was made with only so large a part of the source, or of the target."""
-    if of_source:
-        return _worded(replace(quality, source_coverage=share * quality.source_coverage))
-    return _worded(replace(quality, coverage=share * quality.coverage))
+def of_covered_parts(quality: MatchQuality, shares: tuple[float, float]) -> MatchQuality:
+    """Say of a map, too, that it was made with only so large a part of the source, and of the target."""
+    source, target = shares
+    return _worded(
+        replace(quality, source_coverage=source * quality.source_coverage, coverage=target * quality.coverage)
+    )
 
 
 def _worded(quality: MatchQuality) -> MatchQuality:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..dense.components.masked_maps import share_of, with_piece_only
+from ..dense.components.masked_maps import share_of, with_pieces_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, EVEN, MUCH_ALIKE, has_failed, is_less_alike
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
@@ -238,8 +238,9 @@ class _Way:
         """Match with some vertices (n,) of a surface only; None if these are all of it, or cannot be matched."""
         whole = self.x if self.of_source else self.y
         covered = whole.surface.spread(piece.astype(np.float64), 1.0) > 1 / 2
-        share = share_of(whole.original, covered)
-        if share > _WHOLE or _misses(covered, self.task.landmarks, 0 if self.of_source else 1):
+        if share_of(whole.original, covered) > _WHOLE or _misses(
+            covered, self.task.landmarks, 0 if self.of_source else 1
+        ):
             return None
         try:
             cut = yield from within(_cut_steps(whole, covered, "source" if self.of_source else "target"), 0.0, 0.1)
@@ -247,7 +248,8 @@ class _Way:
             result = yield from within(matched_steps(*shapes, self.task), 0.1, 1.0)
         except MatchError:  # what is left is too small for so many points
             return None
-        return result.with_dense(with_piece_only(result.dense, covered, share, of_source=self.of_source))
+        pieces = (covered, None) if self.of_source else (None, covered)
+        return result.with_dense(with_pieces_only(result.dense, (self.x.original, self.y.original), pieces))
 
     def better_piece(self, result: MatchResult, piece: Bools) -> Bools | None:
         """Tell what of a surface would be a better piece than one (n,), by what has no partner; None if that is right.

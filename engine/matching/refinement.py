@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
-from ..dense.components.masked_maps import piece_of, with_pieces_only
+from ..dense.components.masked_maps import left_out_beyond, piece_of, with_pieces_only
 from ..dense.dense_registration import EIGENPAIRS, RegisteredPair
 from ..dense.densify import dense_match_steps
 from ..dense.quality import DenseMatch
@@ -94,7 +94,7 @@ def refine_map_steps(
         raise MatchError("There are no landmarks to refine the map around. Name at least one pair of vertices.")
     ends = pairs[:, 0], pairs[:, 1]
     pieces = piece_of(source, source_to_target, ends[0]), piece_of(target, target_to_source, ends[1])
-    first, second = (_left_out(mask, piece) for mask, piece in zip(masks, pieces, strict=True))
+    first, second = map(left_out_beyond, pieces, masks)
     seen = reflected_mesh(source) if mirrored else source
     x = yield from within(Shape.steps(seen, "source", excluded=first), 0.0, 0.05)
     y = yield from within(Shape.steps(target, "target", excluded=second), 0.05, 0.08)
@@ -121,13 +121,6 @@ def refine_map_steps(
 
 
 refine_map = at_once(refine_map_steps)
-
-
-def _left_out(excluded: Bools | None, piece: Bools | None) -> Bools | None:
-    """Leave out what is excluded, and what is beyond a piece, (n,) each."""
-    if piece is None:
-        return excluded
-    return ~piece if excluded is None else excluded | ~piece
 
 
 def placed_by_map(

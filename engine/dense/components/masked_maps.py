@@ -11,37 +11,10 @@ from ...mesh.connectivity.components import joined_components
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Ints
-from ..quality import DenseMatch, of_covered_part
+from ..quality import DenseMatch, of_covered_parts
 
 _LEAST_LEFT = 0.1
 """Part of a surface without a partner from which on it is left out: less does little harm, and may be a mistake."""
-
-
-def with_piece_only(maps: DenseMatch, covered: Bools, share: float, *, of_source: bool) -> DenseMatch:
-    """Say of maps what was left out when they were made.
-
-    Parameters
-    ----------
-    maps : DenseMatch
-        Maps between all vertices.
-    covered : (n,) array of bool
-        Which vertices of the original source, or of the target, took part.
-    share : float
-        What part of the area they have.
-    of_source : bool
-        Whether they are of the source.
-
-    Returns
-    -------
-    DenseMatch
-        The maps without confidence at all other vertices, which count as not covered.
-    """
-    there, back = maps.source_to_target, maps.target_to_source
-    if of_source:
-        there = replace(there, has_partner=there.has_partner & covered)
-    else:
-        back = replace(back, has_partner=back.has_partner & covered)
-    return DenseMatch(there, back, of_covered_part(maps.quality, share, of_source=of_source))
 
 
 def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bools | None:
@@ -78,14 +51,39 @@ def _hold_on(mesh: TriangleMesh, covered: Bools, needed: Ints) -> bool:
     return all(covered[one] and areas[own[one]] >= areas[own[whole == whole[one]]].max() for one in needed)
 
 
+def left_out_beyond(piece: Bools | None, left_out: Bools | None) -> Bools | None:
+    """Tell which vertices (n,) are left out if a piece alone, (n,), takes part, beside others; None stands for none."""
+    if piece is None:
+        return left_out
+    return ~piece if left_out is None else left_out | ~piece
+
+
 def with_pieces_only(
     maps: DenseMatch, meshes: tuple[TriangleMesh, TriangleMesh], pieces: tuple[Bools | None, Bools | None]
 ) -> DenseMatch:
-    """Say of maps what was left out of either mesh, see `with_piece_only`; of None nothing was."""
-    for mesh, covered, of_source in zip(meshes, pieces, (True, False), strict=True):
-        if covered is not None:
-            maps = with_piece_only(maps, covered, share_of(mesh, covered), of_source=of_source)
-    return maps
+    """Say of maps what was left out when they were made.
+
+    Parameters
+    ----------
+    maps : DenseMatch
+        Maps between all vertices.
+    meshes : pair of TriangleMesh
+        The original source and target.
+    pieces : pair of (n,) array of bool or None
+        Which vertices of either took part; of None all did.
+
+    Returns
+    -------
+    DenseMatch
+        The maps without confidence at all other vertices, which count as not covered.
+    """
+    if pieces[0] is None and pieces[1] is None:
+        return maps
+    ways = zip((maps.source_to_target, maps.target_to_source), pieces, strict=True)
+    there, back = (way if some is None else replace(way, has_partner=way.has_partner & some) for way, some in ways)
+    ends = zip(meshes, pieces, strict=True)
+    source, target = (1.0 if some is None else share_of(mesh, some) for mesh, some in ends)
+    return DenseMatch(there, back, of_covered_parts(maps.quality, (source, target)))
 
 
 def share_of(mesh: TriangleMesh, covered: Bools) -> float:
