@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..mesh.connectivity.components import joined_components
 from ..mesh.connectivity.halfedges import group_half_edges
+from ..mesh.connectivity.mesh_orientation import orient_consistently, turn_triangles
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import TINY, Bools, Floats, Ints, group_largest, numbered
+from ..runtime.arrays import TINY, Floats, Ints, group_largest, numbered
 
 _SLACK = 1e-6
 """By how much two sides of a triangle are at least longer than the third, in mean edge lengths."""
@@ -104,7 +104,8 @@ def intrinsic_delaunay(mesh: TriangleMesh) -> IntrinsicTriangulation:
     Parameters
     ----------
     mesh : TriangleMesh
-        Any mesh.  Edges at the boundary and edges of more than two triangles are never flipped.
+        Any mesh.  Edges at the boundary and edges of more than two triangles are never flipped, nor are those along
+        which a surface of one side has to be cut for its triangles to look to one side.
 
     Returns
     -------
@@ -122,8 +123,12 @@ def intrinsic_delaunay(mesh: TriangleMesh) -> IntrinsicTriangulation:
     .. [1] M. Fisher, B. Springborn, P. Schröder, A. Bobenko, "An algorithm for the construction of intrinsic Delaunay
        triangulations with applications to digital geometry processing", Computing 81, 2007.
     """
-    triangles, lengths = _oriented(mesh.triangles, mollified_lengths(triangle_lengths(mesh)), mesh.vertex_count)
-    twins = _twins(triangles, mesh.vertex_count)
+    orientation = orient_consistently(
+        mesh.triangles, mesh.triangle_areas, group_half_edges(mesh.triangles, mesh.vertex_count).twins
+    )
+    triangles, twins = turn_triangles(mesh.triangles.copy(), orientation.twins, orientation.turned)
+    lengths = mollified_lengths(triangle_lengths(mesh))
+    lengths = np.where(orientation.turned[:, None], lengths[:, ::-1], lengths)
     cotangents = corner_cotangents(lengths)[0]
     flips = 0
     waiting = np.arange(3 * len(triangles))
@@ -140,43 +145,6 @@ def intrinsic_delaunay(mesh: TriangleMesh) -> IntrinsicTriangulation:
         cotangents[touched] = corner_cotangents(lengths[touched])[0]
         waiting = np.concatenate([bad, (3 * touched[:, None] + np.arange(3)).ravel()])
     return IntrinsicTriangulation(triangles, lengths, flips)
-
-
-def _shared_sides(triangles: Ints, n: int) -> tuple[Ints, Bools]:
-    """Find the edges of exactly two triangles, as pairs of sides, (p, 2); side i of triangle t is number 3 t + i.
-
-    The second array, (p,), tells whether both sides run in the same direction: the triangles look to opposite sides.
-    """
-    one, other = group_half_edges(triangles, n).pairs
-    tails = triangles.ravel()
-    return np.stack([one, other], axis=1), tails[one] == tails[other]
-
-
-def _oriented(triangles: Ints, lengths: Floats, n: int) -> tuple[Ints, Floats]:
-    """Turn triangles over so that neighbours look to the same side, wherever the surface has two sides."""
-    pairs, turned = _shared_sides(triangles, n)
-    if not turned.any():
-        return triangles.copy(), lengths.copy()
-    # The surface's front and back: two copies of each triangle, front t and back t + m, which meet at sides.
-    m = len(triangles)
-    t, u = pairs.T // 3
-    tails, heads = np.concatenate([t, t + m]), np.concatenate([u + m * turned, u + m * ~turned])
-    labels = joined_components(2 * m, tails, heads)
-    over = labels[:m] > labels[m:]
-    turned_lengths = np.where(over[:, None], lengths[:, [2, 1, 0]], lengths)
-    return np.where(over[:, None], triangles[:, [0, 2, 1]], triangles), turned_lengths
-
-
-def _twins(triangles: Ints, n: int) -> Ints:
-    """Find the side that each side is glued to, (3m,); -1 where there is none.
-
-    That is at the boundary, at edges of more than two triangles, and where a surface with only one side has to be cut
-    so that its triangles look to one side.
-    """
-    pairs, turned = _shared_sides(triangles, n)
-    twins = np.full(triangles.size, -1)
-    twins[pairs[~turned]] = pairs[~turned][:, ::-1]
-    return twins
 
 
 def _bad_sides(sides: Ints, twins: Ints, cotangents: Floats) -> Ints:

@@ -41,6 +41,14 @@ class EdgeGroups:
         doubles = self.starts[self.counts == 2]
         return self.order[doubles], self.order[doubles + 1]
 
+    @property
+    def twins(self) -> Ints:
+        """The other half-edge of each edge that has just two, (3m,); -1 for all others."""
+        twins = np.full(len(self.order), -1)
+        one, other = self.pairs
+        twins[one], twins[other] = other, one
+        return twins
+
 
 def following(half_edges: Ints) -> Ints:
     """Return the next half-edge of the same triangle for each half-edge."""
@@ -121,9 +129,7 @@ def pair_half_edges(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> In
     before others; then those with the flattest dihedral angle.  Two that disagree in orientation are paired only if the
     angle between them is obtuse.
     """
-    twins = np.full(3 * len(triangles), -1)
-    one, other = groups.pairs
-    twins[one], twins[other] = other, one
+    twins = groups.twins
     if not (groups.counts > 2).any():
         return twins
     one, other = _crowded_pairs(vertices, triangles, groups, triangle_components(twins))
