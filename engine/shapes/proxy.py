@@ -12,11 +12,10 @@ from scipy.sparse import csr_array, diags_array
 
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints, FoundPoints
-from ..mesh.connectivity.components import joined_components
 from ..mesh.edge_splitting import split_longest_edges
 from ..mesh.surface_points import SurfacePoints, interpolation_matrix
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Floats, Ints, group_means, marked, numbered, slices
+from ..runtime.arrays import Floats, Ints, numbered, slices
 from ..runtime.progress import Progress, Steps, within
 from .remeshing.dual_triangulation import manifold_part
 from .remeshing.surface_cells import SurfaceCells, grid_labels, nearest_members
@@ -28,7 +27,6 @@ MATCHED = 5000
 _LARGE = 1.6  # times as many vertices as wanted: meshes with fewer stand for themselves
 _CELLS = 20.0  # cells for each vertex of the proxy: some where it is densest, and none ever joins two fingers
 _CELL_SIZE = 0.85  # of sqrt(area / cells); a cube cuts more from a slanted surface than its side squared
-_HOLE = 2.0  # perimeter in units of sqrt(area / vertices) below which a hole is closed: no loop of the proxy fits it
 _FITS = 2
 _TETHER = 0.02  # weight of staying in place against that of the vertices around, where these leave freedom
 _FINER = 2.0  # more vertices for the second attempt
@@ -101,7 +99,8 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = MATCHED) -> Steps[Proxy]:
     Parameters
     ----------
     mesh : TriangleMesh
-        A manifold, consistently oriented; it may have open boundaries.  Every vertex has a triangle.
+        A manifold, consistently oriented, as `clean` leaves it: it may have open boundaries, but small holes, in which
+        no loop of the proxy's edges would fit, are closed.  Every vertex has a triangle.
     vertices : int
         About how many vertices the proxy should have.
 
@@ -127,8 +126,8 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = MATCHED) -> Steps[Proxy]:
     Last, the positions are fitted to the vertices in the least squares sense, which restores most of the volume that
     coarse triangles cut away.
 
-    Holes too small for a loop of the proxy's edges are closed in it.  Should faults remain (a mesh that is not a
-    manifold, say), a proxy of twice as many vertices is tried, and then the largest part without faults is taken.
+    Should faults remain (a mesh that is not a manifold, say), a proxy of twice as many vertices is tried, and then the
+    largest part without faults is taken.
 
     The result does not depend on the order of the vertices but for ties of distances and for rounding, nor on the
     scale; it turns with the mesh as far as the grid allows.
@@ -152,41 +151,18 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = MATCHED) -> Steps[Proxy]:
 def _divided_steps(mesh: TriangleMesh, count: int) -> Steps[tuple[VoronoiRegions, Ints]]:
     """Divide a mesh into about so many regions: these, and the triangles between them that are a manifold, (t,)."""
     yield Progress(0.0, "Simplifying the mesh")
-    closed = _without_small_holes(mesh, _HOLE * np.sqrt(mesh.area / count))
+    cell_size = _CELL_SIZE * float(np.sqrt(mesh.area / (_CELLS * count)))
+    labels = grid_labels(mesh, cell_size)
     yield Progress(0.33, "Simplifying the mesh")
-    cell_size = _CELL_SIZE * float(np.sqrt(closed.area / (_CELLS * count)))
-    cells = SurfaceCells.build(closed, grid_labels(closed, cell_size))
+    cells = SurfaceCells.build(mesh, labels)
     yield Progress(0.67, "Simplifying the mesh")
     regions = yield from within(spread_regions_steps(cells, count), 0.67, 0.83)
     yield Progress(0.83, "Simplifying the mesh")
-    regions = regions.repaired(closed)
+    regions = regions.repaired(mesh)
     triangles = regions.dual.triangles
     if regions.dual.faulty.any():
         return regions, manifold_part(triangles, len(regions.seeds))
     return regions, np.arange(len(triangles))
-
-
-def _without_small_holes(mesh: TriangleMesh, perimeter: float) -> TriangleMesh:
-    """Close the holes of a mesh that are shorter around than a length, each by a fan about a new vertex."""
-    low, high = mesh.boundary_edges.T
-    if not len(low):
-        return mesh
-    n = mesh.vertex_count
-    tail, head = mesh.triangles.ravel(), np.roll(mesh.triangles, -1, axis=1).ravel()
-    ends = marked(mesh.boundary_edges, n)
-    near = np.flatnonzero(ends[tail] & ends[head])
-    keys = np.minimum(tail[near], head[near]) * n + np.maximum(tail[near], head[near])
-    border = near[np.isin(keys, low * n + high)]
-    tail, head = tail[border], head[border]
-    loops = np.unique(joined_components(n, tail, head)[tail], return_inverse=True)[1].reshape(-1)
-    small = np.bincount(loops, np.linalg.norm(mesh.vertices[tail] - mesh.vertices[head], axis=1)) < perimeter
-    closing = small[loops]
-    if not closing.any():
-        return mesh
-    centres = group_means(loops, mesh.vertices[tail], len(small))
-    number = n + np.cumsum(small) - 1
-    fans = np.stack([head[closing], tail[closing], number[loops[closing]]], axis=1)
-    return TriangleMesh(np.concatenate([mesh.vertices, centres[small]]), np.concatenate([mesh.triangles, fans]))
 
 
 def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: Ints) -> Steps[Proxy]:
@@ -195,15 +171,13 @@ def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: Ints) -> Steps[Pr
     used, triangles = np.unique(regions.dual.triangles[kept], return_inverse=True)
     triangles = triangles.reshape(-1, 3)
     number = numbered(used, len(regions.seeds))
-    # Closed holes may have vertices that are not of the mesh.
     n = mesh.vertex_count
-    place = number[regions.labels[cells.labels[:n]]]
+    place = number[regions.labels[cells.labels]]
     coarse = TriangleMesh(_first_positions(regions)[used], triangles)
 
     # One vertex of each cell speaks for all in the fit.
     samples = cells.nearest_vertices(mesh.vertices)
-    known = np.flatnonzero(samples >= 0)
-    known = known[place[samples[known]] >= 0]
+    known = np.flatnonzero(place[samples] >= 0)
     samples, weights = samples[known], cells.areas[known]
     search = ClosestPoints(coarse)
     for fit in range(_FITS):

@@ -111,22 +111,10 @@ class SurfaceCells:
         return SurfaceCells.build(mesh, np.unique(labels, return_inverse=True)[1].reshape(-1))
 
     def nearest_vertices(self, vertices: Floats) -> Ints:
-        """Find the vertex of each cell that is nearest to its centre, (c,).
-
-        Parameters
-        ----------
-        vertices : (n', 3) array of float
-            Positions of the vertices that may be chosen: all, or the first of them.
-
-        Returns
-        -------
-        (c,) array of int
-            Vertices; -1 for a cell that has none of these.
-        """
-        labels = self.labels[: len(vertices)]
+        """Find the vertex of each cell nearest to its centre, (c,), by the positions of all vertices, (n, 3)."""
         # A little aside, as two vertices are equally far from their mean.
-        offsets = vertices - (self.positions + self.unit * np.array(_ASIDE))[labels]
-        return nearest_members(labels, np.einsum("nd,nd->n", offsets, offsets), self.count)
+        offsets = vertices - (self.positions + self.unit * np.array(_ASIDE))[self.labels]
+        return nearest_members(self.labels, np.einsum("nd,nd->n", offsets, offsets), self.count)
 
 
 def nearest_members(groups: Ints, distances: Floats, count: int) -> Ints:
