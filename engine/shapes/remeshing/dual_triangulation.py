@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...mesh.connectivity.components import joined_components
-from ...mesh.connectivity.halfedges import following
+from ...mesh.connectivity.halfedges import group_half_edges
+from ...mesh.connectivity.nonmanifold_vertices import several_fans
 from ...runtime.arrays import Bools, Ints, marked
 from .surface_cells import SurfaceCells
 
@@ -79,14 +80,13 @@ def dual_triangulation(cells: SurfaceCells, regions: Ints, count: int) -> DualTr
 
     neighbours = pairs[~inside]
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    joined = np.isin(neighbours.min(axis=1) * count + neighbours.max(axis=1), _edge_keys(tail, head, count))
+    edges = np.minimum(tail, head) * count + np.maximum(tail, head)
+    joined = np.isin(neighbours.min(axis=1) * count + neighbours.max(axis=1), edges)
     faulty[neighbours[~joined]] = True
 
-    crowded, open_ends = _edge_faults(triangles, count)
-    faulty[crowded] = True
-    faulty |= _fan_counts(triangles, count) != 1
-    at_boundary = marked(regions[cells.at_boundary], count)
-    faulty |= at_boundary != marked(open_ends, count)
+    no_disc, at_end = _no_discs(triangles, count)
+    faulty |= no_disc | ~marked(triangles, count)
+    faulty |= at_end != marked(regions[cells.at_boundary], count)
     return DualTriangulation(triangles, faulty)
 
 
@@ -108,9 +108,7 @@ def manifold_part(triangles: Ints, vertex_count: int) -> Ints:
     kept = np.arange(len(triangles))
     while len(kept):
         rest = triangles[kept]
-        crowded, _ = _edge_faults(rest, vertex_count)
-        bad = _fan_counts(rest, vertex_count) > 1
-        bad[crowded] = True
+        bad, _ = _no_discs(rest, vertex_count)
         if not bad.any():
             break
         kept = kept[~bad[rest].any(axis=1)]
@@ -121,32 +119,15 @@ def manifold_part(triangles: Ints, vertex_count: int) -> Ints:
     return kept[parts == np.bincount(parts).argmax()]
 
 
-def _edge_keys(tail: Ints, head: Ints, count: int) -> Ints:
-    """One number for each edge, whatever its direction."""
-    return np.minimum(tail, head) * count + np.maximum(tail, head)
+def _no_discs(triangles: Ints, count: int) -> tuple[Bools, Bools]:
+    """Tell around which vertices triangles are no part of a disc, and which are at ends of the surface, (count,) each.
 
-
-def _edge_faults(triangles: Ints, count: int) -> tuple[Ints, Ints]:
-    """Vertices of half-edges that occur more than once, and vertices of edges with only one triangle."""
+    They are none where an edge has two triangles on one side, or where they fall into several fans.
+    """
+    groups = group_half_edges(triangles, count)
     tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    keys, counts = np.unique(tail * count + head, return_counts=True)
-    crowded = np.concatenate(np.divmod(keys[counts > 1], count))
-    open_ = keys[~np.isin(keys, head * count + tail)]
-    return crowded, np.concatenate(np.divmod(open_, count))
-
-
-def _fan_counts(triangles: Ints, count: int) -> Ints:
-    """Into how many fans the triangles around each vertex fall that hang together across edges, (count,)."""
-    tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    onward = following(np.arange(len(tail)))
-    keys = _edge_keys(tail, head, count)
-    order = np.argsort(keys, kind="stable")
-    first = np.flatnonzero(keys[order][1:] == keys[order][:-1])
-    one, other = order[first], order[first + 1]
-    opposite = tail[one] == head[other]
-    one, other = one[opposite], other[opposite]
-    first, second = np.concatenate([one, onward[one]]), np.concatenate([onward[other], other])
-    fans = joined_components(len(tail), first, second)
-    vertex_of_fan = np.empty(int(fans.max()) + 1 if len(fans) else 0, np.int64)
-    vertex_of_fan[fans] = tail
-    return np.bincount(vertex_of_fan, minlength=count)
+    twins = groups.twins
+    one, other = groups.pairs
+    crowded = np.append(groups.order[groups.starts[groups.counts > 2]], one[tail[one] == tail[other]])
+    bad = several_fans(tail, twins, count) | marked(tail[crowded], count) | marked(head[crowded], count)
+    return bad, marked(tail[twins < 0], count) | marked(head[twins < 0], count)
