@@ -152,6 +152,14 @@ class TriangleMesh:
         return edges[counts == 1]
 
     @cached_property
+    def border_lengths(self) -> Floats:
+        """Length of the closed curve that each of `boundary_edges` belongs to, (b,); those that meet count as one."""
+        tails, heads = self.boundary_edges.T
+        borders = joined_components(self.vertex_count, tails, heads)[tails]
+        lengths = np.linalg.norm(self.vertices[tails] - self.vertices[heads], axis=1)
+        return _read_only(np.bincount(borders, lengths)[borders])
+
+    @cached_property
     def is_closed(self) -> bool:
         """Whether every edge has exactly two triangles."""
         return bool((self._edge_table[1] == 2).all())

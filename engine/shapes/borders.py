@@ -3,9 +3,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from ..mesh.connectivity.components import joined_components
 from .shape import Shape
 
 _LEAST_BORDER = 0.1
@@ -14,11 +11,7 @@ _LEAST_BORDER = 0.1
 
 def longest_border(shape: Shape) -> float:
     """Measure the longest border of a surface, in sqrt(area): faces that are missing here and there make short ones."""
-    mesh = shape.mesh
-    tails, heads = mesh.boundary_edges.T
-    lengths = np.linalg.norm(mesh.vertices[tails] - mesh.vertices[heads], axis=1)
-    borders = joined_components(mesh.vertex_count, tails, heads)[tails]
-    return float(np.bincount(borders, lengths).max(initial=0)) / shape.scale
+    return float(shape.mesh.border_lengths.max(initial=0)) / shape.scale
 
 
 def has_border(shape: Shape) -> bool:

@@ -19,7 +19,7 @@ from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import heat_curvatures
 from ...registration.elastic import ElasticSurface
-from ...runtime.arrays import Bools, Floats, Ints
+from ...runtime.arrays import Bools, Floats, Ints, marked
 from ...runtime.progress import Steps
 from ...shapes.proxy import proxy_steps
 
@@ -107,13 +107,8 @@ class PartSurface:
     @cached_property
     def border(self) -> Bools:
         """Vertices (n,) at which something may have been cut off: those of loops of the border that are no pinholes."""
-        edges = self.mesh.boundary_edges
-        cut = np.zeros(self.count, bool)
-        if len(edges):
-            loops = joined_components(self.count, *edges.T)[edges[:, 0]]
-            lengths = np.linalg.norm(self.vertices[edges[:, 0]] - self.vertices[edges[:, 1]], axis=1)
-            cut[edges[np.bincount(loops, lengths)[loops] > _PINHOLE * np.sqrt(self.area)]] = True
-        return cut
+        cut = self.mesh.boundary_edges[self.mesh.border_lengths > _PINHOLE * np.sqrt(self.area)]
+        return marked(cut, self.count)
 
     @cached_property
     def border_distances(self) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from engine import MeshError, TriangleMesh
-from tests.shapes import creature, cylinder, icosphere, permuted, plane, rotation, torus
+from tests.shapes import creature, cylinder, icosphere, permuted, plane, plane_with_hole, rotation, torus
 
 TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 
@@ -105,6 +105,13 @@ def test_edges_are_sorted_and_measured():
     assert len(np.unique(mesh.edges, axis=0)) == len(mesh.edges) == 3 * mesh.triangle_count // 2
     a, b = mesh.vertices[mesh.edges[:, 0]], mesh.vertices[mesh.edges[:, 1]]
     assert np.allclose(mesh.edge_lengths, np.sqrt(((a - b) ** 2).sum(axis=1)))
+
+
+def test_each_border_is_as_long_as_it_is_around():
+    mesh = TriangleMesh(*plane_with_hole(10, 0.3, 0.6))
+    outer = ((mesh.vertices == 0) | (mesh.vertices == 1))[mesh.boundary_edges, :2].any(axis=2).all(axis=1)
+    np.testing.assert_allclose(mesh.border_lengths, np.where(outer, 4, 4 * 0.3))
+    assert not len(TriangleMesh(*icosphere(3)).border_lengths)
 
 
 def test_areas_approach_those_of_smooth_shapes():
