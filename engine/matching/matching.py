@@ -25,15 +25,12 @@ from .alike_match import alike_match_steps
 from .joined_match import has_limbs, matched_with_pieces_steps
 from .overlap.overlap_match import OverlapMatch, overlap_match_steps
 from .partial_match import (
+    PartialPair,
     agreed_part_steps,
     is_as_alike,
-    is_better_part,
-    is_clear,
     known_piece_matched_steps,
-    part_credibility,
     part_matched_steps,
     piece_matched_steps,
-    piece_with_partner,
 )
 from .result import MatchResult
 from .shape_matching import MatchTask, fitting_settings, matched_steps
@@ -173,7 +170,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     if overlap is not None and overlap.is_likely and min(overlap.shares) < _SHARED:
         if all(cut):
             return overlap.result
-        return (yield from within(_part_steps(overlap, x, y, task, of_source=cut[1]), _OVERLAP, 1.0))
+        return (yield from within(_part_steps(overlap, PartialPair(x, y, of_source=cut[1]), task), _OVERLAP, 1.0))
     is_sure = overlap is not None and overlap.credibility >= _SURE
     if overlap is not None and is_sure:
         task = replace(task, begun=overlap.result.source_to_target)
@@ -192,7 +189,7 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
     return overlap.doubted(best, x, y) if overlap is not None and best is result and all(cut) else best
 
 
-def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, of_source: bool) -> Steps[MatchResult]:
+def _part_steps(overlap: OverlapMatch, pair: PartialPair, task: MatchTask) -> Steps[MatchResult]:
     """Match a part with the piece of a whole surface that it shares, as closely as whole surfaces are matched.
 
     That begins with the map of the overlap.  Where that leads is trusted if it is nearly certain, or as much alike as
@@ -202,32 +199,30 @@ def _part_steps(overlap: OverlapMatch, x: Shape, y: Shape, task: MatchTask, *, o
     shared: a body whose faces are missing here and there is no part.
     """
     known, is_sure = overlap.result, overlap.credibility >= _SURE
-    steps = known_piece_matched_steps(known, x, y, task, of_source=of_source)
-    closer = yield from within(steps, 0.0, _BEGUN)
+    closer = yield from within(known_piece_matched_steps(known, pair, task), 0.0, _BEGUN)
     result = closer if is_sure or is_as_alike(closer, ALL_ALIKE) else known
 
     def clear() -> bool:
         """Say whether no other piece is worth trying."""
-        return is_clear(result, known, of_source=of_source, is_sure=is_sure)
+        return pair.is_clear(result, known, is_sure=is_sure)
 
     if not clear():
-        agreed = agreed_part_steps(result, closer, x, y, task, of_source=of_source)
+        agreed = agreed_part_steps(result, closer, pair, task)
         result, agrees = yield from within(agreed, _BEGUN, _AGREED)
         is_sure = is_sure or agrees
     if not clear():
-        piece = piece_with_partner(known, x, y, of_source=of_source)
-        steps = piece_matched_steps(result, x, y, task, piece, of_source=of_source)
+        steps = piece_matched_steps(result, pair, task, pair.with_partner(known))
         result = yield from within(steps, _AGREED, _CLOSER)
     if clear() and min(result.dense.quality.coverage, result.dense.quality.source_coverage) < _SMALL_PART:
         return result
     # All of both wins if that is more credible, so it is given up as soon as it cannot be.
     found = result.source_to_target if clear() else None
-    task = replace(task, begun=found, least=part_credibility(result, of_source=of_source))
+    task = replace(task, begun=found, least=pair.credibility(result))
     try:
-        other, _, _ = yield from within(matched_with_pieces_steps(x, y, task), _CLOSER, 1.0)
+        other, _, _ = yield from within(matched_with_pieces_steps(pair.x, pair.y, task), _CLOSER, 1.0)
     except MatchError:
         return result
-    return other if is_better_part(other, result, CREDIBLE, of_source=of_source) else result
+    return other if pair.is_better(other, result, CREDIBLE) else result
 
 
 def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_pieces_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, EVEN, MUCH_ALIKE, has_failed, is_less_alike
+from ..mesh.surface_map import SurfaceMap
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
 from ..runtime.progress import Steps, part_of, within
@@ -50,6 +51,111 @@ _BEGUN, _FOUND = 0.15, 0.45
 """Parts of the work after which the piece is matched that is known already, and other pieces are known."""
 
 
+@dataclass(frozen=True, eq=False)
+class PartialPair:
+    """Two surfaces, one of which shows only a part of the other.
+
+    Attributes
+    ----------
+    x, y : Shape
+        The source and the target.
+    of_source : bool
+        Whether the source is the whole surface, and the target the part; else it is the other way round.
+    """
+
+    x: Shape
+    y: Shape
+    of_source: bool
+
+    @property
+    def whole(self) -> Shape:
+        """The surface of which only a piece may be matched."""
+        return self.x if self.of_source else self.y
+
+    @property
+    def part(self) -> Shape:
+        """The other surface."""
+        return self.y if self.of_source else self.x
+
+    def maps(self, result: MatchResult) -> tuple[SurfaceMap, SurfaceMap]:
+        """Take the map of the whole surface to the part, and the one back."""
+        there, back = result.dense.source_to_target, result.dense.target_to_source
+        return (there, back) if self.of_source else (back, there)
+
+    def with_partner(self, result: MatchResult) -> Bools:
+        """Tell which vertices of the whole surface, (n,), have a partner by a match."""
+        return self.maps(result)[0].has_partner[self.whole.vertices]
+
+    def shown(self, result: MatchResult) -> float:
+        """Tell how much of the part has a partner by a match, 0 to 1."""
+        quality = result.dense.quality
+        return quality.coverage if self.of_source else quality.source_coverage
+
+    def shows_all(self, result: MatchResult) -> bool:
+        """Say whether all of the part has a partner by a match."""
+        return self.shown(result) >= _COVERED
+
+    def credibility(self, result: MatchResult) -> float:
+        """Compare matches: larger is more credible; all of the part should have a partner."""
+        quality, missed = result.dense.quality, 1 - self.shown(result)
+        if quality.likeness is None:  # landmarks say which map it is
+            return quality.confidence - missed
+        return quality.likeness - _MISSED * missed
+
+    def needed(self, result: MatchResult, least: float) -> float:
+        """Tell the likeness below which no match with a piece is better than a result, see `is_better`."""
+        return least if result.dense.quality.likeness is None else max(least, self.credibility(result))
+
+    def is_better(self, other: MatchResult, result: MatchResult, least: float) -> bool:
+        """Say whether a match with less of the whole is credible enough, and more so than that with more of it."""
+        enough = not is_less_alike(other.dense.quality.likeness, least)
+        return enough and self.credibility(other) > self.credibility(result)
+
+    def is_clear(self, result: MatchResult, known: MatchResult, *, is_sure: bool) -> bool:
+        """Say whether a match is new, and all of the part so much like the piece that nothing else is worth trying.
+
+        Less likeness is enough if something else says as well that the piece is the right one.
+        """
+        enough = MUCH_ALIKE if is_sure else ALL_ALIKE
+        return result is not known and self.shows_all(result) and is_as_alike(result, enough)
+
+    def piece_steps(self, piece: Bools, task: MatchTask) -> Steps[MatchResult | None]:
+        """Match with some vertices (n,) of the whole only; None if these are all of it, or cannot be matched."""
+        whole = self.whole
+        covered = whole.surface.spread(piece.astype(np.float64), 1.0) > 1 / 2
+        if share_of(whole.original, covered) > _WHOLE or self._misses(covered, task.landmarks):
+            return None
+        try:
+            cut = yield from within(_cut_steps(whole, covered, "source" if self.of_source else "target"), 0.0, 0.1)
+            shapes = (cut, self.y) if self.of_source else (self.x, cut)
+            result = yield from within(matched_steps(*shapes, task), 0.1, 1.0)
+        except MatchError:  # what is left is too small for so many points
+            return None
+        pieces = (covered, None) if self.of_source else (None, covered)
+        return result.with_dense(with_pieces_only(result.dense, (self.x.original, self.y.original), pieces))
+
+    def _misses(self, covered: Bools, landmarks: ArrayLike | None) -> bool:
+        """Say whether a landmark lies outside of what is covered of the whole, (n,)."""
+        return (
+            landmarks is not None and not covered[np.reshape(landmarks, (-1, 2))[:, 0 if self.of_source else 1]].all()
+        )
+
+    def better_piece(self, result: MatchResult, piece: Bools) -> Bools | None:
+        """Tell what of the whole would be a better piece than one (n,), by what has no partner; None if that is right.
+
+        It is without that if that is much, and goes on where the part hangs over.
+        """
+        shown, areas = self.with_partner(result), self.whole.mesh.vertex_areas
+        is_too_large = float(areas @ (piece & ~shown)) > _TOO_LARGE * float(areas @ piece)
+        kept = shown if is_too_large else piece
+        if self.shows_all(result):
+            return kept if is_too_large else None
+        part, (_, back) = self.part, self.maps(result)
+        alone = back.confidence[part.vertices] == 0
+        unit = np.sqrt(float(areas @ piece) / part.mesh.area)
+        return kept | continued(self.whole, part, back.positions[part.vertices], alone, unit)
+
+
 def part_matched_steps(
     result: MatchResult, x: Shape, y: Shape, task: MatchTask, *, is_sure: bool = False
 ) -> Steps[MatchResult]:
@@ -75,42 +181,39 @@ def part_matched_steps(
         The more credible one.  If that is the new one, what was left out follows what is around it, without any
         confidence, and counts as not covered in `quality`.
     """
-    quality, maps = result.dense.quality, (result.dense.source_to_target, result.dense.target_to_source)
-    parts = has_border(x), has_border(y)
+    quality, parts = result.dense.quality, (has_border(x), has_border(y))
     if not any(parts) and not has_failed(quality.likeness, quality.confidence):
         return result
     if not is_less_alike(quality.likeness, CREDIBLE) and min(quality.coverage, quality.source_coverage) >= _MISSING:
         return result
     # What was cut off may have been closed; then nothing says which of them is the part.
-    ways = [(x, y, maps)] if parts[1] or not any(parts) else []
-    ways += [(y, x, maps[::-1])] if parts[0] or not any(parts) else []
-    closer: dict[bool, MatchResult] = {}
-    for of_source in [whole is x for whole, *_ in ways]:
+    pairs = [PartialPair(x, y, of_source=True)] if parts[1] or not any(parts) else []
+    pairs += [PartialPair(x, y, of_source=False)] if parts[0] or not any(parts) else []
+    closer: dict[PartialPair, MatchResult] = {}
+    for pair in pairs:
         # With landmarks nothing says how much alike a piece is.
-        if task.landmarks is None and shows_all_of_part(result, of_source=of_source):
-            steps = known_piece_matched_steps(result, x, y, task, of_source=of_source)
-            closer[of_source] = yield from within(steps, 0.0, _BEGUN)
-            if is_clear(closer[of_source], result, of_source=of_source, is_sure=is_sure):
-                return closer[of_source]
+        if task.landmarks is None and pair.shows_all(result):
+            closer[pair] = yield from within(known_piece_matched_steps(result, pair, task), 0.0, _BEGUN)
+            if pair.is_clear(closer[pair], result, is_sure=is_sure):
+                return closer[pair]
     # Of a closed body, some piece is always more like a ball than all of it.
     least = CREDIBLE if any(parts) else MUCH_ALIKE
     found = []
-    for number, (whole, part, known) in enumerate(ways):
-        needed = _needed(result, least, of_source=whole is x)
-        searching = covered_parts_steps(whole, part, known, needed)
-        pieces = yield from within(searching, *part_of(number, len(ways), _BEGUN, _FOUND), "Looking for missing parts")
-        found += [(piece, whole is x) for piece in pieces]
-    found.sort(key=lambda pair: pair[0].score)
+    for number, pair in enumerate(pairs):
+        searching = _pieces_steps(result, pair, least)
+        pieces = yield from within(searching, *part_of(number, len(pairs), _BEGUN, _FOUND))
+        found += [(piece, pair) for piece in pieces]
+    found.sort(key=lambda item: item[0].score)
     task.clock.lap("missing parts")
     if found:
-        piece, of_source = found[0]
-        if of_source in closer and _is_shown(piece, closer[of_source], result, (x, y), of_source=of_source):
-            return closer[of_source]
-    return (yield from within(_best_piece_steps(result, x, y, task, found[:_MOST], least=least), _FOUND, 1.0))
+        piece, pair = found[0]
+        if pair in closer and _is_shown(piece, closer[pair], result, pair):
+            return closer[pair]
+    return (yield from within(_best_piece_steps(result, task, found[:_MOST], least=least), _FOUND, 1.0))
 
 
 def agreed_part_steps(
-    known: MatchResult, closer: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
+    known: MatchResult, closer: MatchResult, pair: PartialPair, task: MatchTask
 ) -> Steps[tuple[MatchResult, bool]]:
     """Match with what of one surface the other shows, by a search that does not need what is known of that already.
 
@@ -118,12 +221,10 @@ def agreed_part_steps(
     ----------
     known, closer : MatchResult
         A match with a piece of one surface, and what came of that as a start, see `known_piece_matched_steps`.
-    x, y : Shape
-        The source and the target.
+    pair : PartialPair
+        The surfaces.
     task : MatchTask
         What is wanted.
-    of_source : bool
-        Which surface the other one shows a part of: `x`, or else `y`.
 
     Returns
     -------
@@ -132,61 +233,53 @@ def agreed_part_steps(
     agrees : bool
         Whether the search leads to where that does: then it was followed, and nothing else.
     """
-    dense = known.dense
-    maps = dense.source_to_target, dense.target_to_source
-    ends = (x, y, maps) if of_source else (y, x, maps[::-1])
-    searching = covered_parts_steps(*ends, _needed(known, CREDIBLE, of_source=of_source))
-    pieces = yield from within(searching, 0.0, _FOUND, "Looking for missing parts")
+    pieces = yield from within(_pieces_steps(known, pair, CREDIBLE), 0.0, _FOUND)
     task.clock.lap("missing parts")
     agrees = bool(pieces) and not pieces[0].is_new
-    if agrees and _is_shown(pieces[0], closer, known, (x, y), of_source=of_source):
+    if agrees and _is_shown(pieces[0], closer, known, pair):
         return closer, True
     task = replace(task, begun=known.source_to_target) if agrees else task
-    found = [(piece, of_source) for piece in pieces[: 1 if agrees else _MOST]]
-    return (yield from within(_best_piece_steps(known, x, y, task, found, least=CREDIBLE), _FOUND, 1.0)), agrees
+    found = [(piece, pair) for piece in pieces[: 1 if agrees else _MOST]]
+    return (yield from within(_best_piece_steps(known, task, found, least=CREDIBLE), _FOUND, 1.0)), agrees
 
 
-def _is_shown(
-    piece: CoveredPart, closer: MatchResult, known: MatchResult, shapes: tuple[Shape, Shape], *, of_source: bool
-) -> bool:
+def _pieces_steps(known: MatchResult, pair: PartialPair, least: float) -> Steps[list[CoveredPart]]:
+    """Look for pieces of the whole surface that are shown, and may be better than what is known."""
+    steps = covered_parts_steps(pair.whole, pair.part, pair.maps(known), pair.needed(known, least))
+    return within(steps, 0.0, 1.0, "Looking for missing parts")
+
+
+def _is_shown(piece: CoveredPart, closer: MatchResult, known: MatchResult, pair: PartialPair) -> bool:
     """Say whether what was made of a known match is clear, as a search leads there as well, and shows all it found."""
-    if piece.is_new or not is_clear(closer, known, of_source=of_source, is_sure=True):
+    if piece.is_new or not pair.is_clear(closer, known, is_sure=True):
         return False
-    areas = (shapes[0] if of_source else shapes[1]).mesh.vertex_areas * piece.covered
-    return float(areas @ ~piece_with_partner(closer, *shapes, of_source=of_source)) <= _LACKING * float(areas.sum())
+    areas = pair.whole.mesh.vertex_areas * piece.covered
+    return float(areas @ ~pair.with_partner(closer)) <= _LACKING * float(areas.sum())
 
 
 def _best_piece_steps(
-    result: MatchResult, x: Shape, y: Shape, task: MatchTask, pieces: list[tuple[CoveredPart, bool]], *, least: float
+    result: MatchResult, task: MatchTask, pieces: list[tuple[CoveredPart, PartialPair]], *, least: float
 ) -> Steps[MatchResult]:
     """Match with pieces, each of the source or else of the target, until one fits like one body in two poses."""
-    for number, (piece, of_source) in enumerate(pieces):
-        matching = piece_matched_steps(result, x, y, task, piece.covered, of_source=of_source, least=least)
+    for number, (piece, pair) in enumerate(pieces):
+        matching = piece_matched_steps(result, pair, task, piece.covered, least)
         result = yield from within(matching, *part_of(number, len(pieces)))
         if is_as_alike(result, ALL_ALIKE):
             break
     return result
 
 
-def known_piece_matched_steps(
-    known: MatchResult, x: Shape, y: Shape, task: MatchTask, *, of_source: bool
-) -> Steps[MatchResult]:
+def known_piece_matched_steps(known: MatchResult, pair: PartialPair, task: MatchTask) -> Steps[MatchResult]:
     """Match with only that of one surface which has a partner by a known match, beginning with that match.
 
     See `piece_matched_steps`.
     """
-    piece, begun = piece_with_partner(known, x, y, of_source=of_source), replace(task, begun=known.source_to_target)
-    return (yield from piece_matched_steps(known, x, y, begun, piece, of_source=of_source))
-
-
-def piece_with_partner(known: MatchResult, x: Shape, y: Shape, *, of_source: bool) -> Bools:
-    """Tell which vertices (n,) of the source, or else of the target, have a partner by a match."""
-    whole, shown = (x, known.dense.source_to_target) if of_source else (y, known.dense.target_to_source)
-    return shown.has_partner[whole.vertices]
+    begun = replace(task, begun=known.source_to_target)
+    return piece_matched_steps(known, pair, begun, pair.with_partner(known))
 
 
 def piece_matched_steps(
-    result: MatchResult, x: Shape, y: Shape, task: MatchTask, piece: Bools, *, of_source: bool, least: float = CREDIBLE
+    result: MatchResult, pair: PartialPair, task: MatchTask, piece: Bools, least: float = CREDIBLE
 ) -> Steps[MatchResult]:
     """Match with only a piece of one surface, and with more of it where the other goes on beyond.
 
@@ -194,14 +287,12 @@ def piece_matched_steps(
     ----------
     result : MatchResult
         What is known so far.
-    x, y : Shape
-        The source and the target.
+    pair : PartialPair
+        The surfaces.
     task : MatchTask
         What is wanted.
     piece : (n,) array of bool
-        Vertices of the surface that is to be cut down: of `x` if `of_source`, else of `y`.
-    of_source : bool
-        Which surface that is.
+        Vertices of the whole surface.
     least : float
         Likeness that a match with a piece needs to be taken.
 
@@ -211,67 +302,18 @@ def piece_matched_steps(
         The most credible match, the given one among them.
     """
     for again in range(_ROUNDS):
-        way = _Way(x, y, of_source, replace(task, least=_needed(result, least, of_source=of_source)))
-        other = yield from within(way.matched_steps(piece), *part_of(again, _ROUNDS))
+        wanted = replace(task, least=pair.needed(result, least))
+        other = yield from within(pair.piece_steps(piece, wanted), *part_of(again, _ROUNDS))
         if other is None or is_less_alike(other.dense.quality.likeness, EVEN):
             break
-        if is_better_part(other, result, least, of_source=of_source):
+        if pair.is_better(other, result, least):
             # Its notes would speak of openings where a piece was cut out.
             result = replace(other, notes=result.notes)
-        better = way.better_piece(other, piece)
+        better = pair.better_piece(other, piece)
         if better is None:
             break
         piece = better
     return result
-
-
-@dataclass(frozen=True, eq=False)
-class _Way:
-    """Matches only a piece of the source with the target, or the source with only a piece of the target."""
-
-    x: Shape
-    y: Shape
-    of_source: bool
-    task: MatchTask
-
-    def matched_steps(self, piece: Bools) -> Steps[MatchResult | None]:
-        """Match with some vertices (n,) of a surface only; None if these are all of it, or cannot be matched."""
-        whole = self.x if self.of_source else self.y
-        covered = whole.surface.spread(piece.astype(np.float64), 1.0) > 1 / 2
-        if share_of(whole.original, covered) > _WHOLE or _misses(
-            covered, self.task.landmarks, 0 if self.of_source else 1
-        ):
-            return None
-        try:
-            cut = yield from within(_cut_steps(whole, covered, "source" if self.of_source else "target"), 0.0, 0.1)
-            shapes = (cut, self.y) if self.of_source else (self.x, cut)
-            result = yield from within(matched_steps(*shapes, self.task), 0.1, 1.0)
-        except MatchError:  # what is left is too small for so many points
-            return None
-        pieces = (covered, None) if self.of_source else (None, covered)
-        return result.with_dense(with_pieces_only(result.dense, (self.x.original, self.y.original), pieces))
-
-    def better_piece(self, result: MatchResult, piece: Bools) -> Bools | None:
-        """Tell what of a surface would be a better piece than one (n,), by what has no partner; None if that is right.
-
-        It is without that if that is much, and goes on where the part hangs over.
-        """
-        whole, part = (self.x, self.y) if self.of_source else (self.y, self.x)
-        shown = piece_with_partner(result, self.x, self.y, of_source=self.of_source)
-        areas = whole.mesh.vertex_areas
-        is_too_large = float(areas @ (piece & ~shown)) > _TOO_LARGE * float(areas @ piece)
-        kept = shown if is_too_large else piece
-        if shows_all_of_part(result, of_source=self.of_source):
-            return kept if is_too_large else None
-        back = result.dense.target_to_source if self.of_source else result.dense.source_to_target
-        alone = back.confidence[part.vertices] == 0
-        unit = np.sqrt(float(areas @ piece) / part.mesh.area)
-        return kept | continued(whole, part, back.positions[part.vertices], alone, unit)
-
-
-def _misses(covered: Bools, landmarks: ArrayLike | None, column: int) -> bool:
-    """Say whether a landmark lies outside of what is covered, (n,)."""
-    return landmarks is not None and not covered[np.reshape(landmarks, (-1, 2))[:, column]].all()
 
 
 def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
@@ -286,44 +328,6 @@ def _cut_steps(shape: Shape, covered: Bools, name: str) -> Steps[Shape]:
     return (yield from within(with_limbs_steps(cut, name, np.arange(mesh.vertex_count)), 0.7, 1.0))
 
 
-def _needed(result: MatchResult, least: float, *, of_source: bool) -> float:
-    """Tell the likeness below which no match with a piece is better than a result, see `is_better_part`."""
-    if result.dense.quality.likeness is None:
-        return least
-    return max(least, part_credibility(result, of_source=of_source))
-
-
-def is_better_part(other: MatchResult, result: MatchResult, least: float, *, of_source: bool) -> bool:
-    """Say whether a match with less of a surface is more credible than that with more of it, and credible enough."""
-    if is_less_alike(other.dense.quality.likeness, least):
-        return False
-    return part_credibility(other, of_source=of_source) > part_credibility(result, of_source=of_source)
-
-
-def shows_all_of_part(result: MatchResult, *, of_source: bool) -> bool:
-    """Say whether all of the part has a partner: all of the target, if the source is cut down, and the other way."""
-    quality = result.dense.quality
-    return (quality.coverage if of_source else quality.source_coverage) >= _COVERED
-
-
-def is_clear(result: MatchResult, known: MatchResult, *, of_source: bool, is_sure: bool) -> bool:
-    """Say whether a match is new, and all of the part so much like the piece that nothing else is worth trying.
-
-    Less likeness is enough if something else says as well that the piece is the right one.
-    """
-    enough = MUCH_ALIKE if is_sure else ALL_ALIKE
-    return result is not known and shows_all_of_part(result, of_source=of_source) and is_as_alike(result, enough)
-
-
 def is_as_alike(result: MatchResult, enough: float) -> bool:
     """Say whether what is matched is so much alike that nothing else is worth trying."""
     return not is_less_alike(result.dense.quality.likeness, enough)
-
-
-def part_credibility(result: MatchResult, *, of_source: bool) -> float:
-    """Compare matches with a part: larger is more credible; all of it should have a partner."""
-    quality = result.dense.quality
-    missed = 1 - (quality.coverage if of_source else quality.source_coverage)
-    if quality.likeness is None:  # landmarks say which map it is
-        return quality.confidence - missed
-    return quality.likeness - _MISSED * missed

@@ -19,7 +19,7 @@ from engine import (
 )
 from engine.matching import partial_match
 from engine.matching.covered_parts import CoveredPart
-from engine.matching.partial_match import agreed_part_steps, part_matched_steps, piece_matched_steps
+from engine.matching.partial_match import PartialPair, agreed_part_steps, part_matched_steps, piece_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
@@ -172,7 +172,7 @@ def test_with_a_piece_that_is_of_no_use_the_first_match_stays(useless, whole, ha
         yield
 
     monkeypatch.setattr("engine.matching.partial_match.covered_parts_steps", found_steps)
-    monkeypatch.setattr("engine.matching.partial_match.shows_all_of_part", lambda *_, **__: False)
+    monkeypatch.setattr("engine.matching.partial_match.PartialPair.shows_all", lambda *_: False)
     assert run(part_matched_steps(first, x, y, task)) is first
     assert asked
 
@@ -217,8 +217,8 @@ def test_a_piece_that_is_too_large_shrinks_and_one_that_is_too_small_grows(start
     monkeypatch.setattr(partial_match, "matched_steps", tried_steps)
     quality = replace(result.dense.quality, likeness=1.0)
     known = result.with_dense(DenseMatch(result.source_to_target, result.target_to_source, quality))
-    shapes, piece = (Shape(whole[0]), Shape(half[0])), whole[1][:, 0] > start
-    found = run(piece_matched_steps(known, *shapes, MatchTask(QUICK, None), piece, of_source=True))
+    pair, piece = PartialPair(Shape(whole[0]), Shape(half[0]), of_source=True), whole[1][:, 0] > start
+    found = run(piece_matched_steps(known, pair, MatchTask(QUICK, None), piece))
     true = whole[0].vertex_areas @ (whole[1][:, 0] > 0.05) / whole[0].area
     assert len(areas) == 2
     assert (areas[1] > areas[0]) == (start > 0.05)
@@ -229,15 +229,14 @@ def test_a_piece_that_is_too_large_shrinks_and_one_that_is_too_small_grows(start
 
 @pytest.mark.parametrize("is_right", [True, False])
 def test_another_search_agrees_with_a_right_map_alone_and_finds_one_either_way(is_right, result, whole, half):
-    known, shapes = result.dense, (Shape(whole[0]), Shape(half[0]))
+    known, pair = result.dense, PartialPair(Shape(whole[0]), Shape(half[0]), of_source=True)
     there, back = known.source_to_target, known.target_to_source
     if not is_right:
         there, back = astray(half[0], len(there)), astray(whole[0], len(back))
     # As of an overlap: how much alike they are is not known.
     quality = replace(known.quality, likeness=None, confidence=0.1)
     given = result.with_dense(DenseMatch(there, back, quality))
-    steps = agreed_part_steps(given, given, *shapes, MatchTask(QUICK, None), of_source=True)
-    found, agrees = run(steps)
+    found, agrees = run(agreed_part_steps(given, given, pair, MatchTask(QUICK, None)))
     assert agrees == is_right
     assert np.mean(errors(found.target_to_source, half[1], whole[1])) < 0.02
 
