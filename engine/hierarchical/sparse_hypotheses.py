@@ -53,28 +53,11 @@ class Coarse:
 
 
 @dataclass(frozen=True, eq=False)
-class Hypothesis:
-    """One refined matching.
-
-    Attributes
-    ----------
-    coarse : Coarse
-        Where it started.
-    levels : list of Refined
-        The levels since then.
-    cost : float
-        Distortion of the last level.
-    orientation : float
-        Mean agreement of orientation over the whole surface, -1 to 1.
-    score : float
-        Smaller is more credible; comparable between hypotheses of one pair.
-    """
+class _Followed:
+    """A coarse matching, and the levels since then."""
 
     coarse: Coarse
     levels: list[Refined]
-    cost: float
-    orientation: float
-    score: float
 
     @property
     def assignment(self) -> Ints:
@@ -83,18 +66,36 @@ class Hypothesis:
 
 
 @dataclass(frozen=True, eq=False)
-class _Lead:
+class Hypothesis(_Followed):
+    """One refined matching.
+
+    Attributes
+    ----------
+    coarse : Coarse
+        Where it started.
+    levels : list of Refined
+        The levels since then.
+    orientation : float
+        Mean agreement of orientation over the whole surface, -1 to 1.
+    score : float
+        Smaller is more credible; comparable between hypotheses of one pair.
+    """
+
+    orientation: float
+    score: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Lead(_Followed):
     """A coarse matching on its way to a hypothesis, with the orientation that it is to have."""
 
-    coarse: Coarse
     orientation_term: Floats  # (S, T)
-    levels: list[Refined]
-    cost: float
 
     @property
-    def assignment(self) -> Ints:
-        """The matching of the last level, (j,)."""
-        return self.levels[-1].assignment
+    def cost(self) -> float:
+        """Distortion, with what the orientation adds to it."""
+        count = len(self.assignment)
+        return self.coarse.pair.problem(count, extra=self.orientation_term[:count]).cost(self.assignment)
 
 
 def coarse_candidates(pair: Pair) -> int:
@@ -145,8 +146,7 @@ def choose_steps(coarse: list[Coarse]) -> Steps[list[Hypothesis]]:
             here = Progress(0.25 * ((sign < 0) + number / len(coarse)), "Comparing matchings")
             term = start.pair.orientation_term(start.matching.assignment, sign)
             levels = yield from _reporting(here, refine_steps(start.pair, start.matching.assignment, screen, term))
-            cost = start.pair.problem(screen[-1], extra=term[: screen[-1]]).cost(levels[-1].assignment)
-            screened.append(_Lead(start, term, levels, cost))
+            screened.append(_Lead(start, levels, term))
         leads += _best_distinct(screened, _KEPT_DENSE if settings.dense else _KEPT)
     hypotheses: list[Hypothesis] = []
     for number, lead in enumerate(leads):
@@ -222,7 +222,7 @@ def _reflected_steps(hypotheses: list[Hypothesis], sizes: list[int], wanted: lis
             start = best.assignment[symmetry.assignment]
             term = best.coarse.pair.orientation_term(start, sign)
             levels = yield from refine_steps(best.coarse.pair, start, sizes[:1], term)
-            found.append((yield from _follow_steps(_Lead(best.coarse, term, levels, 0.0), sizes[1:])))
+            found.append((yield from _follow_steps(_Lead(best.coarse, levels, term), sizes[1:])))
     return found
 
 
@@ -258,4 +258,4 @@ def assess(coarse: Coarse, levels: list[Refined]) -> Hypothesis:
     residual = max(float(misfits.distances[np.arange(len(lifted)), lifted].mean()), TINY)
     orientation = mean_orientation(source, target, assignment, lifted)
     score = float(np.log(residual) - CURVATURE_WEIGHT * curvature_agreement(source, target, lifted))
-    return Hypothesis(coarse, levels, pair.problem(len(assignment)).cost(assignment), orientation, score)
+    return Hypothesis(coarse, levels, orientation, score)

@@ -15,6 +15,7 @@ from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
 from ..hierarchical.sampled_pair import Pair
 from ..hierarchical.settings import MatchSettings
+from ..hierarchical.sparse_hypotheses import coarse_candidates
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import TINY, Floats, Ints
@@ -164,8 +165,7 @@ def _coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
     """Match the coarse points to themselves exactly, away from the identity: the best distinct matchings."""
     settings = pair.settings
     points = min(settings.coarse_points, settings.points)
-    candidates = points if settings.constraint == "bijective" else settings.coarse_candidates
-    problem = pair.problem(points, min(candidates, len(pair.target.samples)))
+    problem = pair.problem(points, coarse_candidates(pair))
     geodesic = pair.target.samples.distances[: problem.size[1], : problem.size[1]]
     far = geodesic > _FAR * min(1.0, float(geodesic.max()))
     exclusions = [Exclusion(far[:points], int(np.ceil(_MOVED_SHARE * points)))]
