@@ -12,7 +12,6 @@ import numpy as np
 
 from ..geometry.procrustes import agreement_in_place
 from ..mesh.closest_points import FoundPoints
-from ..mesh.surface_points import SurfacePoints
 from ..registration.axial_twists import rolled_back, untwisted
 from ..registration.axial_windings import wound_steps
 from ..registration.deformable import DeformableSurface
@@ -351,9 +350,8 @@ class Follower:
 
     def partnered(self, there: FoundPoints, back: FoundPoints) -> Bools:
         """Tell which vertices of the source have a partner by a pair of maps, (n_x,), see `with_partner`."""
-        meshes = self.source.mesh, self.target.mesh
-        ways = zip(meshes[::-1], (there, back), strict=True)
-        return with_partner(*meshes, *(SurfacePoints.from_barycentric(m, f.triangles, f.barycentric) for m, f in ways))
+        source, target = self.source.mesh, self.target.mesh
+        return with_partner(source, target, there.on(target), back.on(source))
 
     def _length(self, trips: Trips) -> float:
         """Mean length from where it is shorter: what only one of the surfaces has leads elsewhere anyhow."""
@@ -456,5 +454,4 @@ def _registered_steps(follow: Follower, item: tuple[Floats, Stage, float]) -> St
 
 def at_vertices(surface: DeformableSurface, vertices: Ints) -> FoundPoints:
     """Name vertices of a surface as points on it."""
-    points = SurfacePoints.at_vertices(surface.mesh, vertices)
-    return FoundPoints(points.triangles, points.barycentric, np.zeros(len(points)))
+    return surface.search.at_vertices(surface.mesh.vertices[vertices], vertices)

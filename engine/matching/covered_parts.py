@@ -25,7 +25,6 @@ from ..dense.proposers import are_distinct
 from ..dense.registered_hypotheses import Follower
 from ..geometry.best_distinct import best_distinct
 from ..mesh.surface_map import SurfaceMap
-from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
 from ..runtime.arrays import TINY, Bools, Floats, Ints, group_largest
@@ -359,12 +358,8 @@ class _Fitter:
         piece = proposal.piece
         source = DeformableSurface(piece.mesh, piece.laplace)
         candidate = yield from Follower(piece, self.part, source, self._surface).steps(proposal.hypothesis)
-        lying = candidate.registration.on_source
-        places = lying.interpolate(piece.mesh.triangles, piece.mesh.vertices)
-        there, back = (
-            SurfacePoints.from_barycentric(surface.mesh, found.triangles, found.barycentric)
-            for surface, found in ((source, lying), (self._surface, candidate.registration.on_target))
-        )
+        there = candidate.registration.on_source.on(piece.mesh)
+        back = candidate.registration.on_target.on(self.part.mesh)
         overhanging = ~with_partner(self.part.mesh, piece.mesh, there, back)
         score = candidate.score + _OVERHANGING * float(self._surface.mass @ overhanging)
-        return _Fit(score, candidate.likeness, places, overhanging, piece.scale / self.part.scale)
+        return _Fit(score, candidate.likeness, there.positions, overhanging, piece.scale / self.part.scale)

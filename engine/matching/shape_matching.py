@@ -29,7 +29,7 @@ from ..shapes.genus_reduction import evened_steps
 from ..shapes.landmarks import Landmarks, locate_landmarks, placed_at_vertices
 from ..shapes.shape import Shape, check_vertex_count
 from ..shapes.shape_preparation import Wanted, finer_shapes_steps, prepared_shapes_steps
-from ..shapes.surface_distances import SurfaceDistances, to_all_vertices_steps
+from ..shapes.surface_distances import SurfaceDistances
 from .result import MIRRORED, MatchResult, turned_name
 
 _AGREEING = 0.15
@@ -274,7 +274,7 @@ def _distance_rows_steps(answer: Answer) -> Steps[tuple[Floats, Floats]]:
     x, y = answer.coarse.pair.source, answer.coarse.pair.target
     metric = answer.coarse.pair.target_metric
     on_target = metric if isinstance(metric, SurfaceDistances) else SurfaceDistances(y)
-    rows = yield from within(to_all_vertices_steps(on_target, answer.points), 1.0, 1.0)
+    rows = yield from within(on_target.to_all_vertices_steps(answer.points), 1.0, 1.0)
     own = x.samples.rows[: len(answer.points)].astype(np.float64) * x.scale
     return x.surface.spread(own, np.inf), rows
 

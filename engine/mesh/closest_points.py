@@ -14,6 +14,7 @@ from scipy.spatial import cKDTree
 from ..runtime.arrays import TINY, Floats, Ints, ranges, slices
 from ..runtime.errors import MeshError
 from ..runtime.worker import search_threads
+from .surface_points import SurfacePoints
 from .triangle_mesh import TriangleMesh, check_mesh
 
 _BLOCK = 10_000
@@ -73,6 +74,10 @@ class FoundPoints:
     def interpolate(self, triangles: Ints, values: Floats) -> Floats:
         """Values (n, d) of the vertices that the triangles of the surface, (m, 3), name, at the points, (k, d)."""
         return np.einsum("kc,kcd->kd", self.barycentric, values[triangles[self.triangles]])
+
+    def on(self, mesh: TriangleMesh) -> SurfacePoints:
+        """Name them as points of the mesh that was searched, or of one with the same triangles."""
+        return SurfacePoints.from_barycentric(mesh, self.triangles, self.barycentric)
 
     def with_others(self, places: Ints, others: FoundPoints) -> FoundPoints:
         """Put other points in the place of some of these, by their numbers (l,)."""

@@ -87,11 +87,6 @@ class DeformableSurface:
         """The same without where it was cut, (n,)."""
         return self.border if self._cut is None else self.border * ~self._cut
 
-    @property
-    def ends(self) -> bool:
-        """Whether the surface has a border."""
-        return len(self.mesh.boundary_edges) > 0
-
     @cached_property
     def elastic(self) -> ElasticSurface:
         """Its resistance to deformation."""

@@ -73,8 +73,7 @@ def _finer_proxy_steps(_: None, given: tuple[TriangleMesh, Proxy]) -> Steps[tupl
     if proxy.is_identity:
         return proxy, coarse
     starts = coarse.points.nearest_vertices[proxy.vertices]
-    found = ClosestPoints(coarse.mesh).walk(proxy.mesh.vertices, starts)
-    points = SurfacePoints.from_barycentric(coarse.mesh, found.triangles, found.barycentric)
+    points = ClosestPoints(coarse.mesh).walk(proxy.mesh.vertices, starts).on(coarse.mesh)
     return proxy, Proxy(coarse.mesh, points, proxy.points.nearest_vertices[coarse.vertices])
 
 

@@ -223,7 +223,8 @@ class _Matcher:
 
         A helper matches the target, which takes longer.
         """
-        better = last + _are_coarse(self.source, self.target) * (2 if self.source.ends or self.target.ends else 1)
+        ends = self.source.border.any() or self.target.border.any()
+        better = last + _are_coarse(self.source, self.target) * (2 if ends else 1)
         matched = _MATCHED[min(_MATCHED.index(self.stage.matched) + better, 2)]
 
         def own_steps() -> Steps[tuple[FoundPoints, Floats]]:

@@ -123,8 +123,8 @@ class PreparedSurface:
         MatchError
             If a point does not lie on the main part of the mesh.
         """
-        found = ClosestPoints(self.mesh).walk(points.positions, self.mesh_vertices(points.nearest_vertices))
-        return SurfacePoints.from_barycentric(self.mesh, found.triangles, found.barycentric)
+        starts = self.mesh_vertices(points.nearest_vertices)
+        return ClosestPoints(self.mesh).walk(points.positions, starts).on(self.mesh)
 
     def mesh_vertices(self, vertices: Ints) -> Ints:
         """Find the vertex of the surface that is matched that is nearest to each of some original ones (k,).

@@ -144,8 +144,12 @@ class SurfaceDistances:
         """Distances between points (k,), prepared: (k, k), symmetric with a zero diagonal."""
         return symmetric_roots(self.squares_between(points))
 
-    def to_all_vertices(self, points: SurfacePoints) -> Floats:
-        """Distances from points (k,), prepared, to all vertices of the whole surface, in units of the mesh: (k, n)."""
+    def to_all_vertices_steps(self, points: SurfacePoints) -> Steps[Floats]:
+        """Measure the distances from points (k,) to all vertices of the whole surface, in units of the mesh: (k, n).
+
+        They are ``inf`` on other parts of the surface.
+        """
+        yield from self.prepare_steps(points)
         shape = self._shape
         squares = self.squares_to_vertices(points, np.arange(self.mesh.vertex_count))
         return shape.surface.spread(np.sqrt(np.maximum(squares, 0)) * shape.scale, np.inf)
@@ -186,26 +190,7 @@ def distances_to_vertices_steps(mesh: TriangleMesh, points: SurfacePoints) -> St
     """
     shape = yield from within(Shape.steps(mesh), 0.0, 0.2)
     own = points if shape.surface.is_whole else shape.surface.on_mesh(points)
-    return (yield from within(to_all_vertices_steps(SurfaceDistances(shape), own), 0.2, 1.0))
-
-
-def to_all_vertices_steps(metric: SurfaceDistances, points: SurfacePoints) -> Steps[Floats]:
-    """Measure the distances from points to every vertex of the whole surface.
-
-    Parameters
-    ----------
-    metric : SurfaceDistances
-        The metric of the part of the surface that is used.
-    points : SurfacePoints
-        Places (k,) on that part.
-
-    Returns
-    -------
-    (k, n) array of float
-        In units of the mesh; ``inf`` on other parts of the surface.
-    """
-    yield from metric.prepare_steps(points)
-    return metric.to_all_vertices(points)
+    return (yield from within(SurfaceDistances(shape).to_all_vertices_steps(own), 0.2, 1.0))
 
 
 class EmbeddedDistances:

@@ -237,8 +237,7 @@ class _PartMaps:
         done = len(self.mapped) / len(self._x.pieces), (len(self.mapped) + len(items)) / len(self._x.pieces)
         laid = yield from within(shared_steps(laid_steps, followed.around, items), *done, "Mapping every vertex")
         for pair, found in zip(pairs, laid, strict=True):
-            points = SurfacePoints.from_barycentric(there[pair.partner], found.triangles, found.barycentric)
-            self.mapped[numbers[pair.part]] = _Image(candidates[pair.partner], points)
+            self.mapped[numbers[pair.part]] = _Image(candidates[pair.partner], found.on(there[pair.partner]))
             self._free.remove(candidates[pair.partner])
 
 

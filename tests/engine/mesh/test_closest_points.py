@@ -35,7 +35,7 @@ def all_squared_distances(points, mesh):
 
 
 def positions(found, mesh):
-    return SurfacePoints.from_barycentric(mesh, found.triangles, found.barycentric).positions
+    return found.on(mesh).positions
 
 
 def around(mesh, count, distance, seed=0):
@@ -162,6 +162,14 @@ def test_vertices_can_be_named_as_what_was_found(star):
     found = search.at_vertices(points, vertices)
     np.testing.assert_allclose(positions(found, star), star.vertices[vertices])
     np.testing.assert_allclose(found.squared_distances, ((points - star.vertices[vertices]) ** 2).sum(axis=1))
+
+
+def test_what_was_found_can_be_named_as_points_of_the_mesh(star):
+    points, _ = around(star, 200, 0.1)
+    found = ClosestPoints(star).nearest(points)
+    on_mesh = found.on(star)
+    np.testing.assert_allclose(np.square(on_mesh.positions - points).sum(axis=1), found.squared_distances, atol=1e-12)
+    np.testing.assert_array_equal(on_mesh.nearest_vertices, found.nearest_vertices(star.triangles))
 
 
 def test_nearest_vertices_with_normals(star):
