@@ -15,7 +15,7 @@ from ..hierarchical.settings import CheckedSettings, MatchSettings, setting
 from ..hierarchical.sparse_hypotheses import coarse_steps
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints, squared_differences
+from ..runtime.arrays import Floats, Ints, squared_differences
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError, SettingsError
 from ..runtime.progress import Progress, Steps, at_once, part_of, within
@@ -117,11 +117,6 @@ class Retrieval:
     def __repr__(self) -> str:
         return f"<Retrieval: {len(self.order)} shapes, {len(self.matches)} of them matched>"
 
-    @property
-    def by_bound_only(self) -> Bools:
-        """For each shape of the list, whether only the bound decided its place, (n,)."""
-        return np.isnan(self.scores)
-
 
 @can_go_beside
 def retrieve_steps(
@@ -168,12 +163,12 @@ def retrieve_steps(
     surfaces = [query, *([shapes] if isinstance(shapes, (TriangleMesh, Shape)) else shapes)]
     if len(surfaces) == 1:
         raise MatchError("There are no shapes to compare with: choose at least one beside the query.")
-    for number, surface in enumerate(surfaces):
-        check_surface(surface, f"shape {number} of the list" if number else "query")
+    names = ["query", *(f"shape {number} of the list" for number in range(1, len(surfaces)))]
+    for name, surface in zip(names, surfaces, strict=True):
+        check_surface(surface, name)
     prepared = []
-    for number, surface in enumerate(surfaces):
+    for name, surface in zip(names, surfaces, strict=True):
         prepared.append((yield from within(shape_steps(surface), 0.0, 0.0)))
-        name = f"Shape {number} of the list" if number else "query"
         check_vertex_count(prepared[-1], settings.points, name)
     source, *targets = prepared
     signatures = []
