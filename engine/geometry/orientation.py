@@ -40,15 +40,19 @@ def tangent_gradient(mesh: TriangleMesh, vertices: Ints) -> csr_array:
     rotated = np.cross(mesh.triangle_normals[triangle][:, None, :], opposite)
     weight = np.bincount(owner, mesh.triangle_areas[triangle], len(vertices))
     rotated /= np.maximum(2 * weight[owner], TINY)[:, None, None]
-    normal = mesh.vertex_normals[vertices]
-    e1 = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
-    e1 /= np.maximum(np.linalg.norm(e1, axis=1, keepdims=True), TINY)
-    frame = np.stack([e1, np.cross(normal, e1)], axis=1)  # (k, 2, 3)
+    frame = tangent_frames(mesh.vertex_normals[vertices])[:, :2]
     entries = np.einsum("tcd,tfd->tfc", rotated, frame[owner])  # (t, 2, 3 corners)
     rows = np.broadcast_to((2 * owner[:, None] + np.arange(2))[:, :, None], entries.shape)
     columns = np.broadcast_to(corners[:, None, :], entries.shape)
     shape = (2 * len(vertices), mesh.vertex_count)
     return csr_array((entries.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+
+
+def tangent_frames(normals: Floats) -> Floats:
+    """Find right-handed axes (k, 3, 3) at points of a surface, the last of which are its unit normals (k, 3)."""
+    # Any axis that is not along the normal will do.
+    first = unit_vectors(np.cross(normals, np.eye(3)[np.abs(normals).argmin(axis=1)]))
+    return np.stack([first, np.cross(normals, first), normals], axis=1)
 
 
 def tangent_directions(mesh: TriangleMesh, vertices: Ints, values: NDArray[np.float32]) -> Floats:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ...geometry.orientation import tangent_frames
 from ...runtime.arrays import TINY, Floats, Ints, group_sums, unit_vectors
 from .part_surface import PartSurface
 
@@ -76,7 +77,7 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
     """
     vertices = surface.samples(count)
     paths = surface.paths(vertices)
-    frames = _frames(surface.smoothed(surface.normals, _SMOOTHING)[vertices])
+    frames = tangent_frames(unit_vectors(surface.smoothed(surface.normals, _SMOOTHING)[vertices]))
     corners, mesh = surface.mesh.triangles, surface.mesh
     places = np.concatenate([surface.vertices, surface.vertices[corners].mean(axis=1)])
     normals = np.concatenate([surface.normals, mesh.triangle_normals])
@@ -94,15 +95,6 @@ def oriented_patches(surface: PartSurface, count: int) -> OrientedPatches:
         values[number] = sums / np.maximum(amounts, _LEAST / 100)[..., None]
         weights[number] = np.minimum(amounts / _FULL, 1) * (amounts > _LEAST)
     return OrientedPatches(vertices, paths, frames, values, weights)
-
-
-def _frames(normals: Floats) -> Floats:
-    """Find axes (s, 3, 3), right-handed, the last along each normal (s, 3)."""
-    upwards = unit_vectors(normals)
-    # Any axis that is not along the normal will do.
-    aside = np.eye(3)[np.abs(upwards).argmin(axis=1)]
-    first = unit_vectors(np.cross(upwards, aside))
-    return np.stack([first, np.cross(upwards, first), upwards], axis=1)
 
 
 def _seen(offsets: Floats, normals: Floats, lengths: Floats) -> tuple[Ints, Floats]:
