@@ -136,9 +136,8 @@ class GeodesicSolver:
         MeshError
             If a source is not a vertex of the mesh.
         """
-        checked = checked_sources(sources, self._vertex_count)
-        result = np.empty((len(checked), self._vertex_count))
-        for first, block in self.distances_in_blocks(checked):
+        result = np.empty((np.size(sources), self._vertex_count))
+        for first, block in self.distances_in_blocks(sources):
             result[first : first + len(block)] = block
         return result
 
