@@ -132,13 +132,13 @@ def _touches_limbs(cleaned: CleanSurface, vertices: Ints) -> bool:
     return bool(limbs[vertices[(vertices >= 0) & (vertices < len(limbs))]].any())
 
 
-def _joined_steps(_: None, item: tuple[CleanSurface, str, int]) -> Steps[CleanSurface | None]:
-    """Join the pieces of a body."""
-    return (yield from joined_steps(*item))
-
-
 def all_joined_steps(bodies: Sequence[tuple[CleanSurface, str, int]]) -> Steps[list[CleanSurface]]:
-    """Put one surface around the body of each of several meshes, see `joined_steps`, which has what is given.
+    """Put one surface around the body of each of several meshes.
+
+    Parameters
+    ----------
+    bodies : sequence of (CleanSurface, str, int)
+        A mesh, and its pieces; what notes call it; and about how many vertices the surface has at most.
 
     Returns
     -------
@@ -156,17 +156,14 @@ def all_joined_steps(bodies: Sequence[tuple[CleanSurface, str, int]]) -> Steps[l
     return joined
 
 
-def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurface | None]:
+def _joined_steps(_: None, body: tuple[CleanSurface, str, int]) -> Steps[CleanSurface | None]:
     """Put one surface around the main part of a mesh and the pieces that go on beyond it.
 
     Parameters
     ----------
-    cleaned : CleanSurface
-        The mesh, and its pieces.
-    name : str
-        What notes call it.
-    most : int
-        About how many vertices the surface has; a small body's has fewer.
+    body : (CleanSurface, str, int)
+        The mesh, and its pieces; what notes call it; and about how many vertices the surface has: a small body's has
+        fewer.
 
     Returns
     -------
@@ -179,6 +176,7 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     between them are bridged.  Wire frames stand for what they enclose.  The surface is where that begins.  What is
     finer than the grid, such as fingers that touch, is one there.
     """
+    cleaned, name, most = body
     taking_part = cleaned.of_body.copy()
     pieces = [piece.mesh for piece in cleaned.pieces]
     most = min(most, _FINER * sum(piece.vertex_count for piece in compress(pieces, taking_part)))
@@ -198,11 +196,11 @@ def joined_steps(cleaned: CleanSurface, name: str, most: int) -> Steps[CleanSurf
     taking_part &= lying
     if not taking_part[0] or taking_part.sum() == 1:
         return None
-    body = _Body.of(list(compress(cleaned.pieces, taking_part)))
+    pieced = _Body.of(list(compress(cleaned.pieces, taking_part)))
     number = np.cumsum(~taking_part)
     number[taking_part] = 0
     parts = np.append(number, -1)[cleaned.vertex_parts]
-    main = body.stand_in(coarse.mesh, cleaned)
+    main = pieced.stand_in(coarse.mesh, cleaned)
     yield Progress(1.0, _LABEL)
     nearest = main.mesh.triangles[main.place_triangles, main.place_barycentric.argmax(axis=1)]
     others = tuple(compress(cleaned.pieces, ~taking_part))
