@@ -184,7 +184,7 @@ def covered_parts_steps(
     bound = min((fit.score for fit in unchanged), default=np.inf) - _BETTER
     ranked = sorted([*fits, *chain.from_iterable(refined)], key=lambda fit: fit.score)
     credible = [fit for fit in ranked if fit.score <= bound and fit.score < ranked[0].score + _CONTESTED]
-    pieces = [(fitter.covered(fit) | fitter.grown(fit), fit) for fit in credible]
+    pieces = [(fitter.covered(fit), fit) for fit in credible]
     found = best_distinct(pieces, lambda piece, other: fitter.common_part(piece[0], other[0]) < _SAME)
     return [
         CoveredPart(
@@ -298,18 +298,18 @@ class _Fitter:
         return self.whole.samples.rows[np.unique(images)].min(axis=0) < _ROUGHLY
 
     def covered(self, fit: _Fit) -> Bools:
-        """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles."""
+        """Tell which vertices of the whole (n,) are near to the part's vertices or the middles of its triangles.
+
+        And where the whole goes on beyond a piece that was cut out too small, see `continued`.
+        """
         mesh = self.whole.mesh
         places = np.concatenate([fit.places, fit.places[self.part.mesh.triangles].mean(axis=1)])
-        return cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * np.sqrt(mesh.area / mesh.vertex_count)
-
-    def grown(self, fit: _Fit) -> Bools:
-        """Tell where the whole (n,) goes on beyond a piece, see `continued`."""
-        return continued(self.whole, self.part, fit.places, fit.overhanging, fit.unit)
+        near = cKDTree(places).query(mesh.vertices)[0] < _SPACINGS * np.sqrt(mesh.area / mesh.vertex_count)
+        return near | continued(self.whole, self.part, fit.places, fit.overhanging, fit.unit)
 
     def start(self, fit: _Fit) -> tuple[Bools, Ints]:
         """Tell what of the whole a registration covers, (n,), and its samples that those of the part go to."""
-        return self.covered(fit) | self.grown(fit), self.nearest_samples(fit.places[self.part.samples.vertices])
+        return self.covered(fit), self.nearest_samples(fit.places[self.part.samples.vertices])
 
     def nearest_samples(self, places: Floats) -> Ints:
         """Find the samples of the whole that are nearest to places (k, 3)."""
