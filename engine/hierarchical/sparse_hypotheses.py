@@ -122,7 +122,8 @@ def coarse_steps(pair: Pair) -> Steps[list[Coarse]]:
     variants = yield from within(pair.variants_steps(count), 0.0, 0.0)
     problems = [variant.problem(points, candidates) for variant in variants]
     turns = [number % len(variants) for number in range(count)]
-    found = yield from matchings_of_each_steps([problems[turn] for turn in turns], _DISTINCT, settings.node_limit)
+    apart = problems[0].target_distances > _DISTINCT
+    found = yield from matchings_of_each_steps([problems[turn] for turn in turns], apart, settings.node_limit)
     return [Coarse(variants[turn], matching) for turn, matching in zip(turns, found, strict=False)]
 
 

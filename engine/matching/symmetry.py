@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.best_distinct import best_distinct
-from ..hierarchical.exact.branch_and_bound import BoundedMatching, branch_and_bound_steps
+from ..hierarchical.exact.branch_and_bound import BoundedMatching, matchings_of_each_steps
 from ..hierarchical.exact.exclusion import Exclusion
 from ..hierarchical.hierarchy import level_sizes, refine_steps
 from ..hierarchical.lifted_samples import CURVATURE_WEIGHT, curvature_agreement, mean_orientation, sample_misfits
@@ -21,12 +21,11 @@ from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import TINY, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.progress import Progress, Steps, at_once, part_of, within
+from ..runtime.progress import Progress, Steps, at_once, within
 from ..shapes.shape import Shape, check_vertex_count, shape_steps
 
 _FAR = 0.2  # a point moved farther than this, in sqrt(area), is in another place
 _MOVED_SHARE = 0.3  # part of the coarse points that has to be in another place: the others may lie on the axis
-_DISTINCT_SHARE = 0.5  # the same between two coarse matchings
 _INVOLUTION_SCALE = 0.1  # mean distance between a point and the image of its image that counts as far
 _OVERSAMPLING = 2  # times the hypotheses of a match: many swap left and right in a part of the body only
 _ROUNDS = 4  # of making the map its own inverse, and of placing the images; both settle in two or three
@@ -168,16 +167,9 @@ def _coarse_steps(pair: Pair) -> Steps[list[BoundedMatching]]:
     problem = pair.problem(points, coarse_candidates(pair))
     geodesic = pair.target.samples.distances[: problem.size[1], : problem.size[1]]
     far = geodesic > _FAR * min(1.0, float(geodesic.max()))
-    exclusions = [Exclusion(far[:points], int(np.ceil(_MOVED_SHARE * points)))]
-    found: list[BoundedMatching] = []
-    count = _OVERSAMPLING * settings.hypotheses
-    for number in range(count):
-        search = branch_and_bound_steps(problem, node_limit=settings.node_limit, exclusions=exclusions)
-        matching = yield from within(search, *part_of(number, count))
-        if matching is None:
-            break
-        found.append(matching)
-        exclusions.append(Exclusion(far[matching.assignment], int(np.ceil(_DISTINCT_SHARE * points))))
+    identity = Exclusion(far[:points], int(np.ceil(_MOVED_SHARE * points)))
+    problems = [problem] * (_OVERSAMPLING * settings.hypotheses)
+    found = yield from matchings_of_each_steps(problems, far, settings.node_limit, [identity])
     if not found:
         raise MatchError(
             "The mesh is too coarse to be matched to anything but itself: use more Coarse Candidates or subdivide it."

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ...runtime.arrays import Ints
+from ...runtime.arrays import Bools, Ints
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps, part_of, told, within
 from ..problem import MatchingProblem
@@ -132,7 +132,10 @@ def distinct_matchings_steps(
         The problem.
     count : int
         How many matchings to find.
-    radius, node_limit
+    radius : float
+        Two matchings are distinct if at least half of the points, rounded up, lie farther than this from each other,
+        in the units of the distances.
+    node_limit : int
         As in `matchings_of_each_steps`.
 
     Returns
@@ -141,11 +144,11 @@ def distinct_matchings_steps(
         At most `count`, the best one first: each is the best that is distinct from all before it, and its lower bound
         is among those.
     """
-    return matchings_of_each_steps([problem] * count, radius, node_limit)
+    return matchings_of_each_steps([problem] * count, problem.target_distances > radius, node_limit)
 
 
 def matchings_of_each_steps(
-    problems: Sequence[MatchingProblem], radius: float = 0.2, node_limit: int = 1_000_000
+    problems: Sequence[MatchingProblem], apart: Bools, node_limit: int, exclusions: Sequence[Exclusion] = ()
 ) -> Steps[list[BoundedMatching]]:
     """Find the best matching of each of some problems that is no variation of one before.
 
@@ -153,11 +156,13 @@ def matchings_of_each_steps(
     ----------
     problems : sequence of MatchingProblem
         Problems that differ in what single matches cost.
-    radius : float
-        Two matchings are distinct if at least half of the points, rounded up, lie farther than this from each other,
-        in the units of the distances.
+    apart : (m, m) array of bool
+        Which candidates are different places: two matchings are distinct if they take at least half of the points,
+        rounded up, to such.
     node_limit : int
         For each matching: number of nodes after which its search stops.
+    exclusions : sequence of Exclusion
+        What all of them are to keep away from.
 
     Yields
     ------
@@ -175,15 +180,14 @@ def matchings_of_each_steps(
         As `branch_and_bound_steps`.
     """
     found: list[BoundedMatching] = []
-    exclusions: list[Exclusion] = []
+    excluded = list(exclusions)
     for number, problem in enumerate(problems):
-        search = branch_and_bound_steps(problem, node_limit=node_limit, exclusions=exclusions)
+        search = branch_and_bound_steps(problem, node_limit=node_limit, exclusions=excluded)
         matching = yield from within(search, *part_of(number, len(problems)))
         if matching is None:
             break
         found.append(matching)
-        moved = problem.target_distances[matching.assignment] > radius
-        exclusions.append(Exclusion(moved, (problem.size[0] + 1) // 2))
+        excluded.append(Exclusion(apart[matching.assignment], (problem.size[0] + 1) // 2))
     return found
 
 
