@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
+from ..mesh.connectivity.halfedges import group_half_edges
 from ..mesh.triangle_mesh import TriangleMesh
 from ..runtime.arrays import Bools, Floats, Ints
 
@@ -94,7 +95,7 @@ def corner_tables(mesh: TriangleMesh) -> CornerTables:
     """
     unit = float(mesh.edge_lengths.mean())
     corners = _corners(mesh, unit)
-    d, dx, dy = _behind(corners)
+    d, dx, dy = _behind(mesh, corners)
     sees = _crossing_inside(corners, dx, dy) & (d >= 0)
     flip_lengths = np.hypot(corners.x - dx, corners.y - dy)
     flips = np.flatnonzero(sees & (flip_lengths < _SHORT * corners.l))
@@ -133,22 +134,17 @@ def _laid_out(vertices: tuple[Ints, Ints, Ints], at_c: Floats, at_a: Floats, at_
     return _Corners(*vertices, length, x, np.maximum(y, smallest))
 
 
-def _behind(corners: _Corners) -> tuple[Ints, Floats, Floats]:
+def _behind(mesh: TriangleMesh, corners: _Corners) -> tuple[Ints, Floats, Floats]:
     """For each corner, the vertex d across a b and its position (x, y) in the plane of the corner; d = -1 if none.
 
     There is none at the boundary and at edges of more than two triangles.
     """
-    a, b = corners.a, corners.b
-    key = np.minimum(a, b) * (int(max(a.max(), b.max())) + 1) + np.maximum(a, b)
-    order = np.argsort(key, kind="stable")
-    ordered = key[order]
-    same = ordered[1:] == ordered[:-1]
-    first = np.flatnonzero(same & ~np.append(False, same[:-1]) & ~np.append(same[1:], False))
-    behind = np.full(len(key), -1)
-    behind[order[first]], behind[order[first + 1]] = order[first + 1], order[first]
-    there = corners.at(behind)
-    x = np.where(there.a == a, there.x, corners.l - there.x)
-    return np.where(behind >= 0, there.c, -1), x, -there.y
+    m = mesh.triangle_count
+    slot, triangle = np.divmod(np.arange(3 * m), m)
+    across = group_half_edges(mesh.triangles, mesh.vertex_count).twins[3 * triangle + (slot + 1) % 3]
+    there = corners.at((across + 2) % 3 * m + across // 3)
+    x = np.where(there.a == corners.a, there.x, corners.l - there.x)
+    return np.where(across >= 0, there.c, -1), x, -there.y
 
 
 def _crossing_inside(corners: _Corners, dx: Floats, dy: Floats) -> Bools:
