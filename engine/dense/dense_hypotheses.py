@@ -163,11 +163,6 @@ def map_hypotheses_steps(
     list of MapHypothesis
         Those that keep the orientation and those that mirror it, by growing score; what is far less credible than the
         best of its orientation is left out.
-
-    Raises
-    ------
-    MatchError
-        If a surface has too few samples or eigenfunctions.
     """
     a, b = domains = domains or (map_domains(x, y) if searched is None else searched.domains)
     yield Progress(0.05, "Comparing maps")
@@ -314,8 +309,7 @@ def _keeping_leads_steps(x: MapDomain, y: MapDomain, searched: RoughSearch | Non
 
 def _smooth_maps(x: MapDomain, y: MapDomain, points: PointMaps) -> FunctionalMaps:
     """Take maps between the coarse samples without their noise."""
-    size = min(_SMOOTH, x.coarse_basis.size, y.coarse_basis.size)
-    return fit_functional_maps(x.coarse_basis, y.coarse_basis, points, size)
+    return fit_functional_maps(x.coarse_basis, y.coarse_basis, points, _SMOOTH)
 
 
 def _between_fine(x: MapDomain, y: MapDomain, maps: FunctionalMaps) -> PointMaps:
@@ -333,8 +327,7 @@ def _from_start(x: MapDomain, y: MapDomain, start: SparseStart) -> PointMaps:
 
 def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> MapLead:
     """Score maps between the fine samples by all that is known."""
-    size = min(_FINE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
-    maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, size)
+    maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, _FINE_SIZES[-1])
     terms = spectral_terms(x, y, maps) | curvature_terms(x, y, points)
     terms["distances"] = distance_term(x, y, points)
     terms["rigidity"] = rigidity_term(x, y, points, _SMOOTHED)
@@ -343,6 +336,5 @@ def _assessed(x: MapDomain, y: MapDomain, points: PointMaps, origin: str) -> Map
 
 def _between_all_vertices_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[PointMaps]:
     """Extend maps between the fine samples to all vertices."""
-    size = min(_FINE_SIZES[-1], x.fine_basis.size, y.fine_basis.size)
-    maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, size)
+    maps = fit_functional_maps(x.fine_basis, y.fine_basis, points, _FINE_SIZES[-1])
     return (yield from points_from_functions_steps(maps, x.functions, y.functions))

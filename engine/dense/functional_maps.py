@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from scipy.linalg import qr, solve_triangular
 
 from ..runtime.arrays import Floats, Ints, slices
-from ..runtime.errors import MatchError
 from ..runtime.progress import Progress, Steps, run
 
 _INDEPENDENT = 0.3
@@ -107,28 +106,19 @@ def fit_functional_maps(x: SampledBasis, y: SampledBasis, maps: PointMaps, size:
     maps : PointMaps
         Between the samples.
     size : int
-        Number of eigenfunctions k; at most `size` of either basis.
+        Number of eigenfunctions k; fewer if the samples of a surface cannot tell so many apart.
 
     Returns
     -------
     FunctionalMaps
         Of size k.
 
-    Raises
-    ------
-    MatchError
-        If the samples of a surface cannot tell so many functions apart.
-
     References
     ----------
     .. [1] M. Ovsjanikov, M. Ben-Chen, J. Solomon, A. Butscher, L. Guibas, "Functional maps: a flexible representation
        of maps between shapes", SIGGRAPH 2012.
     """
-    if not 1 <= size <= min(x.size, y.size):
-        raise MatchError(
-            f"A functional map between {size} eigenfunctions cannot be fitted: the samples tell only {x.size} of the "
-            f"source and {y.size} of the target apart. Use fewer eigenfunctions or more samples."
-        )
+    size = min(size, x.size, y.size)
     return FunctionalMaps(
         x.coefficients(y.functions[maps.on_y, :size], size), y.coefficients(x.functions[maps.on_x, :size], size)
     )

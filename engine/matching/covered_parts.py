@@ -28,7 +28,6 @@ from ..mesh.surface_map import SurfaceMap
 from ..mesh.triangle_mesh import TriangleMesh
 from ..registration.deformable import DeformableSurface
 from ..runtime.arrays import TINY, Bools, Floats, Ints, group_largest
-from ..runtime.errors import MatchError
 from ..runtime.parallel_map import shared_steps
 from ..runtime.progress import Steps, part_of, within
 from ..shapes.shape import Shape
@@ -345,12 +344,9 @@ class _Fitter:
         places = whole.vertices[self.whole.samples.vertices[images[:_STARTS]]]
         rows = self.whole.samples.rows[images[:_STARTS]][:, vertices] * (self.whole.scale / piece.scale)
         begin = SparseStart(rows, self.part.samples.rows[:_STARTS], "placement")
-        try:
-            if known:
-                return _Proposal(piece, unrefined_hypothesis(map_domains(piece, self.part), begin), places)
-            hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [begin], search=False), 0.5, 1.0)
-        except MatchError:  # the largest of several pieces may be too small
-            return None
+        if known:
+            return _Proposal(piece, unrefined_hypothesis(map_domains(piece, self.part), begin), places)
+        hypotheses = yield from within(map_hypotheses_steps(piece, self.part, [begin], search=False), 0.5, 1.0)
         return _Proposal(piece, hypotheses[0], places)
 
     def fit_steps(self, proposal: _Proposal) -> Steps[_Fit]:

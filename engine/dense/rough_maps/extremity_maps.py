@@ -301,9 +301,7 @@ def _differing(y: MapDomain, apart: float) -> Callable[[MapLead, MapLead], bool]
 def _refined_steps(x: MapDomain, y: MapDomain, points: PointMaps) -> Steps[MapLead]:
     """Refine a map between the coarse samples, and score it."""
     points = yield from refine_bijective_steps(x.coarse_basis, y.coarse_basis, points, _SIZES)
-    maps = fit_functional_maps(
-        x.coarse_basis, y.coarse_basis, points, min(_SIZES[-1], x.coarse_basis.size, y.coarse_basis.size)
-    )
+    maps = fit_functional_maps(x.coarse_basis, y.coarse_basis, points, _SIZES[-1])
     terms = spectral_terms(x, y, maps)
     orientation = map_orientation(x, y, points, maps)
     score = terms["bijectivity"] - _ORIENTED * abs(orientation)

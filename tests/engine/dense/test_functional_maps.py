@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from engine import MatchError, TriangleMesh
+from engine import TriangleMesh
 from engine.dense.functional_maps import (
     FunctionalMaps,
     PointMaps,
@@ -143,8 +143,7 @@ def test_functions_that_samples_cannot_tell_apart_are_not_used():
     assert SampledBasis(np.ones((3, 9))).size == 1
     refined = run(refine_bijective_steps(basis, basis, identity(12), [5, 9, 12]))
     assert len(refined.on_y) == 12
-    with pytest.raises(MatchError, match="8 eigenfunctions"):
-        fit_functional_maps(basis, basis, identity(12), 8)
+    assert len(fit_functional_maps(basis, basis, identity(12), 8).onto_x) == 7
 
 
 def test_sizes_grow_from_first_to_last():
