@@ -115,7 +115,7 @@ class _Carrier:
         """Match samples of the part, whose distances are in `unit` of those of the whole: images (r, m)."""
         m, n = self._part.shape[1], self._sides.shape[1]
         own = unit * self._part[:m]
-        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), kept=_WIDTH, width=_WIDTH)
+        return beam_matchings(own, self._whole[:n, :n], np.zeros((m, n)), _WIDTH)
 
     def carried(self, images: Ints, unit: float) -> _Matching:
         """Carry a matching over to the scouts."""

@@ -232,7 +232,7 @@ def _many_limbs_steps(x: MapDomain, y: MapDomain, sign: int) -> Steps[list[MapLe
 def _matchings(x: MapDomain, y: MapDomain, of_x: Ints, of_y: Ints) -> Ints:
     """Match coarse samples (m,) to coarse samples (n,) in the best ways: positions of images (r, m)."""
     distances_x, distances_y = (d.shape.samples.distances[np.ix_(n, n)] for d, n in ((x, of_x), (y, of_y)))
-    return beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), kept=_OFFERED)
+    return beam_matchings(distances_x, distances_y, _dissimilarity(x, y, of_x, of_y), _OFFERED)
 
 
 def _searches(x: MapDomain, y: MapDomain) -> list[_Search]:

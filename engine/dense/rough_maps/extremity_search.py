@@ -10,9 +10,7 @@ from ...runtime.arrays import TINY, Floats, Ints
 _WEIGHT = 0.3  # of the descriptors beside the distances
 
 
-def beam_matchings(
-    distances_x: Floats, distances_y: Floats, dissimilarity: Floats, *, kept: int, width: int = 400
-) -> Ints:
+def beam_matchings(distances_x: Floats, distances_y: Floats, dissimilarity: Floats, width: int) -> Ints:
     r"""Match points one after the other, keeping the best partial matchings only.
 
     The cost of images t is
@@ -28,15 +26,13 @@ def beam_matchings(
         Distances between the points of Y, in the same unit; n >= m.
     dissimilarity : (m, n) array of float
         L, how unlike the descriptors of the points are.
-    kept : int
-        How many matchings are wanted at most, r.
     width : int
-        How many partial matchings are kept.
+        How many matchings are kept at most, partial ones and in the end, r.
 
     Returns
     -------
     (r, m) array of int
-        For each matching the images of the points, one after another; the cheapest first, up to `kept`.
+        For each matching the images of the points, one after another; the cheapest first.
     """
     m, n = dissimilarity.shape
     images, costs = np.arange(n)[:, None], _WEIGHT * dissimilarity[0]
@@ -49,4 +45,4 @@ def beam_matchings(
         best = np.argsort(extended, axis=None, kind="stable")[: min(width, len(images) * (n - new))]
         costs = extended.ravel()[best]
         images = np.column_stack([images[best // n], best % n])
-    return images[:kept]
+    return images

@@ -28,7 +28,7 @@ def cost(distances_x, distances_y, dissimilarity, images, weight=0.3):
 def test_a_wide_beam_finds_the_best_of_all_matchings(seed):
     _, distances_y, dissimilarity = problem(seed, 4, 6)
     distances_x = problem(seed + 100, 4, 4)[1]
-    found = beam_matchings(distances_x, distances_y, dissimilarity, kept=50, width=360)
+    found = beam_matchings(distances_x, distances_y, dissimilarity, 360)[:50]
     best = sorted(
         (cost(distances_x, distances_y, dissimilarity, images), images) for images in permutations(range(6), 4)
     )
@@ -38,12 +38,12 @@ def test_a_wide_beam_finds_the_best_of_all_matchings(seed):
 def test_a_narrow_beam_finds_an_exact_copy_and_never_an_image_twice():
     rng, distances, dissimilarity = problem(7, 6, 10)
     order = rng.permutation(10)[:6]
-    found = beam_matchings(distances[np.ix_(order, order)], distances, 0 * dissimilarity, kept=40, width=100)
+    found = beam_matchings(distances[np.ix_(order, order)], distances, 0 * dissimilarity, 100)
     np.testing.assert_array_equal(found[0], order)
-    assert found.shape == (40, 6)
+    assert found.shape == (100, 6)
     assert all(len(set(images)) == 6 for images in found.tolist())
 
 
 def test_no_more_matchings_than_there_are():
     _, distances, dissimilarity = problem(3, 3, 3)
-    assert len(beam_matchings(distances, distances, dissimilarity, kept=50)) == 6
+    assert len(beam_matchings(distances, distances, dissimilarity, 50)) == 6
