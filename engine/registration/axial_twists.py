@@ -232,25 +232,21 @@ def _turned_back(
 def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
     """Find limbs and the rings around them, as far as they are no wider than limbs are; no vertex is in two of them."""
     tips = spread_extremities(shape, _LIMBS, _APART, filled=False)
-    rows = shape.samples.rows[tips].astype(np.float64)
-    everything = np.arange(len(source.vertices))
     found = []
-    for row in rows:
-        rings = _rings(source, everything, row, _LONGEST)
-        if len(rings) < _FEWEST_RINGS:
-            rings = []
-        radii = _radii(source, rings) if rings else np.empty(0)
-        chosen = _stout(radii[: _slender(radii)])
-        found.append((rings[chosen], radii[chosen]))
+    for row in shape.samples.rows[tips].astype(np.float64):
+        rings = _rings(source, row, _LONGEST)
+        if len(rings) >= _FEWEST_RINGS:
+            radii = _radii(source, rings)
+            chosen = _stout(radii[: _slender(radii)])
+            found.append((row, rings[chosen], radii[chosen]))
+    claims = np.full((len(found), len(source.vertices)), np.inf)
+    for claim, (row, rings, radii) in zip(claims, found, strict=True):
+        near = row < rings[-1].distance
+        claim[near] = row[near] * np.interp(row[near], [ring.distance for ring in rings], radii) ** 3
     limbs = []
-    claims = np.full((len(found), len(everything)), np.inf)
-    for claim, (rings, radii), row in zip(claims, found, rows, strict=True):
-        if rings:
-            near = row < rings[-1].distance
-            claim[near] = row[near] * np.interp(row[near], [ring.distance for ring in rings], radii) ** 3
-    for number, ((rings, radii), row) in enumerate(zip(found, rows, strict=True)):
+    for number, (row, rings, radii) in enumerate(found):
         # What two limbs reach is of the one that is thinner there; if they are alike, whose tip is nearer.
-        others = claims[np.arange(len(claims)) != number].min(axis=0, initial=np.inf)
+        others = np.delete(claims, number, axis=0).min(axis=0, initial=np.inf)
         lost = np.isfinite(claims[number]) & (others <= claims[number])
         kept = [ring.weights @ ~lost[ring.vertices] > _MOSTLY for ring in rings]
         own = rings[: kept.index(False) if False in kept else len(kept)]
@@ -269,13 +265,12 @@ def _slender(radii: Floats) -> int:
             last = number
         elif number - last > _WIDE_RINGS:
             break
-    return min(last + 1, len(radii))
+    return last + 1
 
 
 def _stout(radii: Floats) -> slice:
     """Which rings of a limb say how it is turned: all but those at the tip that are so thin that any turn is cheap."""
-    enough = np.flatnonzero(radii >= _THIN * np.median(radii)) if len(radii) else [0]
-    return slice(int(enough[0]), len(radii))
+    return slice(int(np.argmax(radii >= _THIN * np.median(radii))), len(radii))
 
 
 def _long_body(shape: Shape, source: DeformableSurface) -> list[_Limb]:
@@ -283,11 +278,11 @@ def _long_body(shape: Shape, source: DeformableSurface) -> list[_Limb]:
     values = shape.spectrum.values
     if values[2] < _LONG * values[1]:
         return []
-    everything, lengths = np.arange(len(source.vertices)), _lengthwise(shape)
-    rings = _rings(source, everything, lengths, float(lengths.max()))
+    lengths = _lengthwise(shape)
+    rings = _rings(source, lengths, float(lengths.max()))
     if len(rings) < _FEWEST_RINGS:
         return []
-    return [_Limb(everything, lengths, rings, _radii(source, rings), held=False)]
+    return [_Limb(np.arange(len(lengths)), lengths, rings, _radii(source, rings), held=False)]
 
 
 def _lengthwise(shape: Shape) -> Floats:
@@ -305,15 +300,15 @@ def _lengthwise(shape: Shape) -> Floats:
     return np.interp(function, edges, np.append(0, np.cumsum(np.diff(edges) / steepness)))
 
 
-def _rings(source: DeformableSurface, vertices: Ints, distances: Floats, length: float) -> list[_Ring]:
-    """Cut the vertices (v,) of a limb into rings by their distances (v,) from its tip, up to where some are missing."""
+def _rings(source: DeformableSurface, distances: Floats, length: float) -> list[_Ring]:
+    """Cut a surface into rings by the distances (n,) from the tip of a limb, up to where some are missing."""
     rings: list[_Ring] = []
     for distance in (np.arange(int(length / _WIDTH)) + 0.5) * _WIDTH:
         away = np.abs(distances - distance)
-        around = vertices[away < _WIDTH]
+        around = np.flatnonzero(away < _WIDTH)
         if len(around) >= _FEWEST_VERTICES:
             mass = source.mass[around]
-            area = float(source.mass[vertices[away < _WIDTH / 2]].sum())
+            area = float(source.mass[away < _WIDTH / 2].sum())
             rings.append(_Ring(float(distance), around, mass / mass.sum(), area))
         elif rings:
             break
