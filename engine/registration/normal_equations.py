@@ -29,7 +29,7 @@ class NormalEquations:
     Parameters
     ----------
     stiffness : (n, n) csr_array of float
-        K, symmetric and positive semi-definite.
+        Says where K has entries.
     triangles : (m, 3) array of int
         Corners of the triangles.
     """
@@ -49,9 +49,8 @@ class NormalEquations:
         self._of_stiffness, self._diagonal, of_triangles = np.split(slots, np.cumsum([len(known.row), n]))
         self._corners = of_triangles.reshape(-1, 9)
         self._triangles = triangles
-        self._stiffness = self._values(stiffness)
 
-    def solver(self, own: Floats, points: FoundPoints, weights: Floats, *, stiffness: csr_array | None = None) -> Solve:
+    def solver(self, own: Floats, points: FoundPoints, weights: Floats, stiffness: csr_array) -> Solve:
         """Factor the matrix for some points.
 
         Parameters
@@ -62,8 +61,8 @@ class NormalEquations:
             Points (k,) of the triangles.
         weights : (k,) array of float
             Their weights b.
-        stiffness : (n, n) csr_array of float, optional
-            Another K, with entries at the same places.
+        stiffness : (n, n) csr_array of float
+            K, symmetric and positive semi-definite.
 
         Returns
         -------
@@ -72,8 +71,8 @@ class NormalEquations:
         """
         here = points.barycentric
         squares = (weights[:, None, None] * here[:, :, None] * here[:, None, :]).ravel()
-        known = self._stiffness if stiffness is None else self._values(stiffness)
-        values = known + np.bincount(self._corners[points.triangles].ravel(), squares, len(self._rows))
+        values = np.bincount(self._of_stiffness, coo_array(stiffness).data, len(self._rows)).astype(float, copy=False)
+        values += np.bincount(self._corners[points.triangles].ravel(), squares, len(self._rows))
         values[self._diagonal] += own
         n = len(self._place)
         factor = symmetric_factor(csc_array((values, self._rows, self._starts), shape=(n, n)), ordered=True)
@@ -83,10 +82,6 @@ class NormalEquations:
             return factor.solve(right[self._order])[self._place]
 
         return solve
-
-    def _values(self, stiffness: csr_array) -> Floats:
-        """Entries of a stiffness, in the order of all."""
-        return np.bincount(self._of_stiffness, coo_array(stiffness).data, len(self._rows)).astype(float, copy=False)
 
     def pull(self, points: FoundPoints, forces: Floats) -> Floats:
         """Sum forces (k, 3) at points (k,) of the triangles, over the vertices that they act on: (n, 3)."""

@@ -443,7 +443,7 @@ def _solved(
     theirs = weight * target.mass * _agreement(on_source.interpolate(source.triangles, normals), target.normals)
     theirs[_beyond(target, on_source, source)] = 0
     equations = source.equations
-    solve = equations.solver(own, on_source, theirs, stiffness=elastic.stiffness)
+    solve = equations.solver(own, on_source, theirs, elastic.stiffness)
     right = own[:, None] * wanted + equations.pull(on_source, theirs[:, None] * target.vertices)
     response = None if ties is None else solve(ties.forces)
 

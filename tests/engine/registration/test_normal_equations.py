@@ -42,7 +42,7 @@ def test_the_solution_is_that_of_the_full_matrix(seed, body):
     right = random.normal(size=(mesh.vertex_count, 3))
     evaluate = evaluation(mesh, points).toarray()
     full = stiffness.toarray() + np.diag(own) + evaluate.T @ (weights[:, None] * evaluate)
-    solve = equations.solver(own, points, weights)
+    solve = equations.solver(own, points, weights, stiffness)
     np.testing.assert_allclose(solve(right), np.linalg.solve(full, right), rtol=1e-8, atol=1e-10)
     np.testing.assert_allclose(solve(right[:, :1]), np.linalg.solve(full, right[:, :1]), rtol=1e-8, atol=1e-10)
 
@@ -52,9 +52,9 @@ def test_points_in_the_same_place_and_none_at_all(body):
     own, right = np.ones(mesh.vertex_count), mesh.vertices
     once = some_points(mesh, 1, 3)
     twice = FoundPoints(once.triangles.repeat(2), once.barycentric.repeat(2, axis=0), np.zeros(2))
-    together = equations.solver(own, twice, np.array([1.0, 2.0]))(right)
-    np.testing.assert_allclose(together, equations.solver(own, once, np.array([3.0]))(right), rtol=1e-9)
-    free = equations.solver(own, some_points(mesh, 0, 0), np.empty(0))(right)
+    together = equations.solver(own, twice, np.array([1.0, 2.0]), stiffness)(right)
+    np.testing.assert_allclose(together, equations.solver(own, once, np.array([3.0]), stiffness)(right), rtol=1e-9)
+    free = equations.solver(own, some_points(mesh, 0, 0), np.empty(0), stiffness)(right)
     np.testing.assert_allclose(stiffness @ free + free, right, atol=1e-9)
 
 
@@ -74,9 +74,9 @@ def test_another_stiffness_at_the_same_places(body):
     other = csr_array((entries.data * factors[entries.row] * factors[entries.col], (entries.row, entries.col)))
     evaluate = evaluation(mesh, points).toarray()
     full = other.toarray() + np.diag(own) + evaluate.T @ (weights[:, None] * evaluate)
-    solved = equations.solver(own, points, weights, stiffness=other)(mesh.vertices)
+    solved = equations.solver(own, points, weights, other)(mesh.vertices)
     np.testing.assert_allclose(solved, np.linalg.solve(full, mesh.vertices), rtol=1e-8, atol=1e-10)
     # The equations themselves are as they were.
     full += stiffness.toarray() - other.toarray()
-    solved = equations.solver(own, points, weights)(mesh.vertices)
+    solved = equations.solver(own, points, weights, stiffness)(mesh.vertices)
     np.testing.assert_allclose(solved, np.linalg.solve(full, mesh.vertices), rtol=1e-8, atol=1e-10)
