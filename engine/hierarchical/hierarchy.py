@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from ..runtime.arrays import Floats, Ints, marked
+from ..runtime.arrays import Floats, Ints, marked, squared_differences
 from ..runtime.progress import Progress, Steps
 from .problem import MatchingProblem
 from .relaxation import RelaxedMatching, descend, project
@@ -79,8 +79,7 @@ def _add_points(problem: MatchingProblem, assignment: Ints) -> Ints:
         return assignment
     known = problem.source_distances[old:, :old]  # (new, old)
     offered = problem.target_distances[:, assignment]  # (m, old)
-    misfit = np.square(known).sum(axis=1)[:, None] + np.square(offered).sum(axis=1) - 2 * known @ offered.T
-    cost = problem.linear[old:] + 2 * problem.quadratic_weight * misfit
+    cost = problem.linear[old:] + 2 * problem.quadratic_weight * squared_differences(known, offered)
     free = ~marked(assignment, cost.shape[1])
     _, chosen = linear_sum_assignment(cost[:, free])
     return np.concatenate([assignment, np.flatnonzero(free)[chosen]])

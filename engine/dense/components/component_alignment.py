@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from ...geometry.laplacian import laplace_beltrami
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import nearest_orthogonal
 from ...mesh.closest_points import ClosestPoints, FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import DeformableSurface
@@ -169,7 +169,7 @@ def _rigidly(part: TriangleMesh, aim: _Aim, pair: PartPair, rotation: Floats) ->
         shares = np.concatenate([here.shares, aim.points.shares]) / 2
         middle, goal = shares @ sources, shares @ targets
         product = np.einsum("k,ki,kj->ij", shares, targets - goal, sources - middle)
-        rotation = handed * nearest_rotations(handed * product[None])[0]
+        rotation = nearest_orthogonal(product[None], handed)[0]
         shift = goal - rotation @ middle
     centre = centre + shift
     return _Motion(rotation, centre, distance, _cost(distance, pair, _placed(part, pair, rotation, centre)))
