@@ -140,10 +140,6 @@ class SurfaceDistances:
         mixed = (weights @ rows.T).T - self._offsets(points)  # from the vertex nearest to i to point j
         return mixed + mixed.T - rows[:, np.searchsorted(corners, nearest)]
 
-    def between(self, points: SurfacePoints) -> Floats:
-        """Distances between points (k,), prepared: (k, k), symmetric with a zero diagonal."""
-        return symmetric_roots(self.squares_between(points))
-
     def to_all_vertices_steps(self, points: SurfacePoints) -> Steps[Floats]:
         """Measure the distances from points (k,) to all vertices of the whole surface, in units of the mesh: (k, n).
 

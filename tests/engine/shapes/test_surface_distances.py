@@ -40,7 +40,7 @@ def test_in_the_plane_distances_are_straight(flat):
     run(distances.prepare_steps(points))
     # What is left is the error of fast marching at some needles: edges are 0.07 long.
     straight = np.linalg.norm(points.positions[:, None] - points.positions, axis=2) / 3.0
-    error = np.abs(distances.between(points) - straight)
+    error = np.abs(symmetric_roots(distances.squares_between(points)) - straight)
     assert error.max() < 1e-2
     assert error.mean() < 2e-4
     squares = distances.squares_to_vertices(points, np.arange(flat.mesh.vertex_count))
@@ -56,7 +56,7 @@ def test_distances_of_a_triangle_to_itself_are_exact(flat):
     distances = SurfaceDistances(flat)
     run(distances.prepare_steps(points))
     straight = np.linalg.norm(points.positions[:, None] - points.positions, axis=2) / 3.0
-    np.testing.assert_allclose(distances.between(points), straight, atol=1e-6)
+    np.testing.assert_allclose(symmetric_roots(distances.squares_between(points)), straight, atol=1e-6)
 
 
 def test_on_a_sphere_they_are_closer_than_those_of_the_nearest_vertices():
@@ -67,7 +67,7 @@ def test_on_a_sphere_they_are_closer_than_those_of_the_nearest_vertices():
     unit = points.positions / np.linalg.norm(points.positions, axis=1, keepdims=True)
     great_circle = np.arccos(np.clip(unit @ unit.T, -1, 1)) / shape.scale
     smooth = great_circle * shape.scale < 2.8  # beyond, other shortest paths are as short
-    error = np.abs(distances.between(points) - great_circle)[smooth]
+    error = np.abs(symmetric_roots(distances.squares_between(points)) - great_circle)[smooth]
     rounded = shape.solver.distances(points.nearest_vertices)[:, points.nearest_vertices] / shape.scale
     assert error.max() < 0.015
     assert error.mean() < 0.3 * np.abs(rounded - great_circle)[smooth].mean()
@@ -85,7 +85,9 @@ def test_by_nearest_vertices_they_are_almost_the_same(surface):
     )
     edge = shape.mesh.edge_lengths.max() / shape.scale
     far = exact > (3 * edge) ** 2
-    rounded = np.square(fewer.between(SurfacePoints.at_vertices(shape.mesh, points.nearest_vertices)))
+    rounded = np.square(
+        symmetric_roots(fewer.squares_between(SurfacePoints.at_vertices(shape.mesh, points.nearest_vertices)))
+    )
     assert np.percentile(np.abs(near - exact)[far], 95) < edge**2
     assert np.abs(near - exact)[far].mean() < 0.1 * np.abs(rounded - exact)[far].mean()
 
@@ -116,7 +118,7 @@ def test_they_are_symmetric_and_continuous_across_edges():
     )
     distances = SurfaceDistances(shape)
     run(distances.prepare_steps(points))
-    between = distances.between(points)
+    between = symmetric_roots(distances.squares_between(points))
     np.testing.assert_array_equal(between, between.T)
     np.testing.assert_allclose(between[0], between[1], atol=1e-6)
     assert between[0, 1] == pytest.approx(0, abs=1e-3)
@@ -131,7 +133,7 @@ def test_rows_are_computed_once_and_their_memory_is_bounded(monkeypatch):
     distances = SurfaceDistances(shape)
     points = random_points(shape.mesh, 30)
     run(distances.prepare_steps(points))
-    expected = distances.between(points)
+    expected = symmetric_roots(distances.squares_between(points))
     assert sorted(asked) == sorted(set(points.corners.ravel()))
     run(distances.prepare_steps(points))
     assert len(asked) == len(set(asked))
@@ -141,7 +143,7 @@ def test_rows_are_computed_once_and_their_memory_is_bounded(monkeypatch):
         run(small.prepare_steps(random_points(shape.mesh, 30, seed)))
         assert len(small._rows) <= 100  # noqa: SLF001
     run(small.prepare_steps(points))
-    np.testing.assert_array_equal(small.between(points), expected)
+    np.testing.assert_array_equal(symmetric_roots(small.squares_between(points)), expected)
 
 
 @pytest.mark.usefixtures("alone")
@@ -152,7 +154,7 @@ def test_rows_of_the_samples_are_used(monkeypatch):
     distances = SurfaceDistances(shape)
     points = SurfacePoints.at_vertices(shape.mesh, shape.samples.vertices)
     run(distances.prepare_steps(points))
-    np.testing.assert_allclose(distances.between(points), shape.samples.distances, atol=1e-5)
+    np.testing.assert_allclose(symmetric_roots(distances.squares_between(points)), shape.samples.distances, atol=1e-5)
 
 
 def test_estimates_from_the_samples_are_not_used():
@@ -163,7 +165,7 @@ def test_estimates_from_the_samples_are_not_used():
     points = SurfacePoints.at_vertices(shape.mesh, estimated.samples.vertices)
     run(distances.prepare_steps(points))
     true = shape.solver.distances(estimated.samples.vertices)[:, estimated.samples.vertices] / shape.scale
-    np.testing.assert_allclose(distances.between(points), (true + true.T) / 2, atol=1e-5)
+    np.testing.assert_allclose(symmetric_roots(distances.squares_between(points)), (true + true.T) / 2, atol=1e-5)
 
 
 def test_embedded_distances_are_straight_through_their_space():

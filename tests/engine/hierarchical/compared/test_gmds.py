@@ -6,7 +6,7 @@ import pytest
 
 from engine import MatchError, Shape, SurfacePoints, TriangleMesh, run
 from engine.hierarchical.compared.gmds import gmds_steps
-from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances
+from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances, symmetric_roots
 from tests.shapes import creature, icosphere, plane
 
 
@@ -41,7 +41,7 @@ def differences(result, bodies):
     distances = SurfaceDistances(target)
     run(distances.prepare_steps(result.target_points))
     count = len(result.target_points)
-    return distances.between(result.target_points) - source.samples.distances[:count, :count]
+    return symmetric_roots(distances.squares_between(result.target_points)) - source.samples.distances[:count, :count]
 
 
 def test_the_result_is_consistent_in_itself(result, bodies):
@@ -71,7 +71,9 @@ def test_from_a_true_start_the_points_come_close_to_the_truth(bodies):
     rounded = SurfacePoints.at_vertices(bodies[1].mesh, found.target_points.nearest_vertices)
     distances = SurfaceDistances(bodies[1])
     run(distances.prepare_steps(rounded))
-    at_vertices = np.square(distances.between(rounded) - bodies[0].samples.distances[:40, :40]).sum()
+    at_vertices = np.square(
+        symmetric_roots(distances.squares_between(rounded)) - bodies[0].samples.distances[:40, :40]
+    ).sum()
     assert found.quadratic < 0.7 * at_vertices
 
 

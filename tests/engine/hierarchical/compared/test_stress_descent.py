@@ -6,7 +6,7 @@ import pytest
 
 from engine import Progress, Shape, SurfacePoints, TriangleMesh, run
 from engine.hierarchical.compared.stress_descent import Stress, joined, settle_steps
-from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances
+from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances, symmetric_roots
 from tests.shapes import creature, plane, plane_with_hole
 
 
@@ -48,7 +48,7 @@ def test_points_at_their_places_stay_there(patch):
     )
     distances = SurfaceDistances(patch)
     run(distances.prepare_steps(places))
-    settled = run(settle_steps(distances, places, Stress(distances.between(places))))
+    settled = run(settle_steps(distances, places, Stress(symmetric_roots(distances.squares_between(places)))))
     assert settled.stress == settled.start == 0
     np.testing.assert_array_equal(settled.points.barycentric, places.barycentric)
 
@@ -63,7 +63,7 @@ def test_the_stress_is_that_of_the_points_and_never_rises(patch):
     last = np.inf
     for sweeps in range(6):
         settled = run(settle_steps(distances, start, stress, max_sweeps=sweeps, tolerance=0))
-        between = distances.between(settled.points)
+        between = symmetric_roots(distances.squares_between(settled.points))
         own = (linear[np.arange(15)[:, None], settled.points.corners] * settled.points.barycentric).sum()
         expected = own + np.square(between - wanted).sum()
         assert settled.stress == pytest.approx(expected)
