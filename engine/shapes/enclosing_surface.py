@@ -185,7 +185,7 @@ def _joined_steps(_: None, body: tuple[CleanSurface, str, int]) -> Steps[CleanSu
     pieces = [filled_openwork(each, apart * unit, _WIDEST * unit) if is_openwork(each) else each for each in pieces]
     skin = yield from within(_skin_steps(pieces, taking_part, ~taking_part, apart), 0.0, 0.5, _LABEL)
     lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part
-    if skin is not None and (taking_part & ~lying).any():
+    if (taking_part & ~lying).any():
         taking_part |= _between(pieces, taking_part & lying, taking_part & ~lying)
         skin = yield from within(_skin_steps(pieces, taking_part, ~lying, apart), 0.5, 0.6, _LABEL)
         lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 
 from ...mesh.connectivity.adjacency import pair_matrix
 from ...mesh.connectivity.components import joined_components
@@ -99,11 +98,6 @@ class SurfaceCells:
         a, b = self.pairs.T
         lengths = np.linalg.norm(self.positions[a] - self.positions[b], axis=1) + _LEAST_LENGTH * self.unit
         return pair_matrix(self.pairs, lengths, self.count)
-
-    @cached_property
-    def component_labels(self) -> Ints:
-        """Number of the connected component of each cell, (c,)."""
-        return connected_components(self.graph, directed=False)[1].astype(np.int64)
 
     def dissolved(self, mesh: TriangleMesh, cells: Bools) -> SurfaceCells:
         """Return the cells of the same mesh with some (c,) replaced by one cell for each of their vertices."""

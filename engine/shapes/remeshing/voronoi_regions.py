@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
+from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Floats, Ints, group_sums, marked, numbered
 from ...runtime.progress import Progress, Steps
@@ -117,7 +118,7 @@ def spread_regions_steps(cells: SurfaceCells, count: int) -> Steps[VoronoiRegion
     yield Progress(0.2, _LABEL)
     seeds = _poisson_disk(cells, count, density)
     # A part too small for a seed of its own still needs one.
-    components = cells.component_labels
+    components = joined_components(cells.count, *cells.pairs.T)
     parts, first = np.unique(components, return_index=True)
     seeds = np.concatenate([seeds, first[~np.isin(parts, components[seeds])]])
     # Centres of such weights keep the density as it is: regions shrink by the fourth root of what their cells weigh.
