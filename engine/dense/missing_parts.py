@@ -7,10 +7,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..mesh.connectivity.adjacency import neighbour_means
-from ..mesh.connectivity.components import joined_components
 from ..mesh.surface_points import SurfacePoints
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools, Floats, Ints
+from ..runtime.arrays import Bools, Floats
 
 _SPACINGS, _LEAST_TRIP = 3.0, 0.03
 """Length of a round trip from which on it does not lead home: vertex spacings, and a part of sqrt(area)."""
@@ -69,7 +68,7 @@ def with_partner(source: TriangleMesh, target: TriangleMesh, there: SurfacePoint
     core = lost.copy()
     least = max(_OTHER_SPACINGS / np.sqrt(target.vertex_count), _LEAST_GAP)
     core[lost] = _gaps(source.vertices[lost], target, back) > least * unit
-    part = _parts(source, away)
+    part = source.parts_of(away)
     areas = np.bincount(part, source.vertex_areas * core, n)
     return ~(away & (areas[part] >= _LEAST_CORE * source.area))
 
@@ -82,11 +81,6 @@ def _gaps(places: Floats, target: TriangleMesh, back: SurfacePoints) -> Floats:
     if len(reached) < _DENSE:
         reached = np.concatenate([reached, reached[target.triangles].mean(axis=1)])
     return cKDTree(reached, balanced_tree=False, compact_nodes=False).query(places)[0]
-
-
-def _parts(mesh: TriangleMesh, chosen: Bools) -> Ints:
-    """Find the connected parts of the chosen vertices (n,): the number of each one's part, (n,); others are alone."""
-    return joined_components(mesh.vertex_count, *mesh.edges[chosen[mesh.edges].all(axis=1)].T)
 
 
 def _mostly(mesh: TriangleMesh, marked: Bools) -> Bools:

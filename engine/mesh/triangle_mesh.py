@@ -177,6 +177,10 @@ class TriangleMesh:
         first = group_smallest(labels, np.arange(n), len(areas), n)
         return numbered(np.lexsort((first, -areas)), len(areas))[labels]
 
+    def parts_of(self, chosen: Bools) -> Ints:
+        """Find the connected parts of chosen vertices (n,): the number of that of each, (n,); all others are alone."""
+        return joined_components(self.vertex_count, *self.edges[chosen[self.edges].all(axis=1)].T)
+
     @property
     def component_count(self) -> int:
         """Number of edge-connected components, vertices without a triangle included."""

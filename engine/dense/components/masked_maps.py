@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...mesh.connectivity.components import joined_components
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Ints
@@ -45,8 +44,7 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bool
 
 def _hold_on(mesh: TriangleMesh, covered: Bools, needed: Ints) -> bool:
     """Say whether needed vertices (k,) are on the largest part of what is covered, (n,), of their piece of a mesh."""
-    own = joined_components(len(covered), *mesh.edges[covered[mesh.edges].all(axis=1)].T)
-    whole = joined_components(len(covered), *mesh.edges.T)
+    own, whole = mesh.parts_of(covered), mesh.component_labels
     areas = np.bincount(own, mesh.vertex_areas * covered)
     return all(covered[one] and areas[own[one]] >= areas[own[whole == whole[one]]].max() for one in needed)
 

@@ -15,7 +15,6 @@ from ...geometry.sampling import farthest_point_sampling
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.connectivity.adjacency import edge_graph
-from ...mesh.connectivity.components import joined_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...registration.deformable import heat_curvatures
 from ...registration.elastic import ElasticSurface
@@ -139,6 +138,6 @@ class PartSurface:
 
     def largest_piece(self, chosen: Bools) -> Bools:
         """Keep of the chosen vertices (n,) those of the connected piece with the largest area."""
-        pieces = joined_components(self.count, *self.mesh.edges[chosen[self.mesh.edges].all(axis=1)].T)
+        pieces = self.mesh.parts_of(chosen)
         areas = np.bincount(pieces, self.mass * chosen)
         return chosen & (pieces == areas.argmax())

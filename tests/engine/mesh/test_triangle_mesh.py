@@ -179,6 +179,14 @@ def test_components_are_those_of_the_shape_whatever_the_order():
     assert np.array_equal(labels[new], TriangleMesh(vertices, triangles).component_labels)
 
 
+def test_parts_of_chosen_vertices_hang_together_by_edges_between_them():
+    mesh = TriangleMesh(*plane(5))
+    left, right = (mesh.vertices[:, 0] < 0.3, mesh.vertices[:, 0] > 0.7)
+    parts = mesh.parts_of(left | right)
+    assert len(set(parts[left])) == len(set(parts[right])) == 1
+    assert len(set(parts)) == 2 + (~(left | right)).sum()
+
+
 def test_equal_components_are_numbered_by_their_first_vertex():
     vertices, triangles = together(plane(3), plane(3))
     mesh = TriangleMesh(vertices, triangles[::-1])
