@@ -70,9 +70,8 @@ def _cycles_of_three(numbers: Ints, tails: Ints, heads: Ints, n: int) -> Ints:
     first = np.repeat(np.arange(len(tails)), end - begin)
     second = ranges(begin, end - begin)
     wanted = heads[second] * n + tails[first]
-    third = np.minimum(np.searchsorted(keys, wanted), max(len(keys) - 1, 0))
-    closed = keys[third] == wanted if len(keys) else np.zeros(0, bool)
-    walks = numbers[np.stack([first, second, third], axis=1)[closed]]
+    third = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    walks = numbers[np.stack([first, second, third], axis=1)[keys[third] == wanted]]
     return walks[(walks[:, 0] < walks[:, 1]) & (walks[:, 0] < walks[:, 2])]
 
 
