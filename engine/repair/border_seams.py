@@ -7,11 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..mesh.connectivity.adjacency import pair_matrix
-from ..mesh.connectivity.components import joined_components
+from ..mesh.connectivity.components import joined_components, vertex_components
 from ..mesh.connectivity.halfedges import EdgeGroups, triangle_slots
 from ..mesh.triangle_mesh import triangle_areas
 from ..runtime.arrays import Bools, Floats, Ints, evenly, group_sums, marked, unit_vectors
@@ -171,7 +170,7 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
         return None, 0.0
     areas = triangle_areas(vertices, triangles)
     area = float(areas.sum())
-    pieces = joined_components(len(vertices), triangles[:, :2].ravel(), triangles[:, 1:].ravel())
+    pieces = vertex_components(triangles, len(vertices))
     sizes = np.bincount(pieces[triangles[:, 0]], areas, minlength=int(pieces.max()) + 1)
     tails, heads, tops = (triangle_slots(triangles, open_edges, shift) for shift in (0, 1, 2))
     large = sizes[pieces[tails]] > _SMALLEST * area
@@ -193,7 +192,7 @@ def _borders(vertices: Floats, triangles: Ints, groups: EdgeGroups) -> tuple[_Bo
     for _ in range(_SMOOTHED):
         outward = unit_vectors(outward)
         outward = outward + neighbours @ outward
-    loops = connected_components(neighbours, directed=False)[1]
+    loops = joined_components(k, tail, head)
     enough = np.bincount(loops)[loops] >= _FEWEST
     around = (np.bincount(tail, lengths, k) + np.bincount(head, lengths, k)) / 2
     if len(np.unique(pieces[border[enough]])) < 2:

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ...mesh.closest_points import ClosestPoints
-from ...mesh.connectivity.components import joined_components
+from ...mesh.connectivity.components import vertex_components
 from ...mesh.triangle_mesh import TriangleMesh
 from ...repair.clean_surface import CleanSurface
 from ...runtime.arrays import TINY, Floats, Ints
@@ -106,8 +106,7 @@ def _sheets(surface: CleanSurface) -> list[_Sheet]:
         return []
     used, corners = np.unique(mesh.triangles[triangles], return_inverse=True)
     corners = corners.reshape(-1, 3)
-    tails, heads = corners.ravel(), corners[:, [1, 2, 0]].ravel()
-    labels = joined_components(len(used), tails, heads)
+    labels = vertex_components(corners, len(used))
     count = int(labels.max()) + 1
     if count > _MOST_SHEETS:
         return []

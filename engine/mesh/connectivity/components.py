@@ -16,6 +16,11 @@ def joined_components(count: int, first: Ints, second: Ints) -> Ints:
     return connected_components(graph, directed=False)[1].astype(np.int64)
 
 
+def vertex_components(triangles: Ints, count: int) -> Ints:
+    """Find the components of vertices that triangles (m, 3) join: the number of that of each, (count,)."""
+    return joined_components(count, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
+
+
 def triangle_components(twins: Ints) -> Ints:
     """Find the components of triangles that hang together across paired half-edges.
 

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 
 from ...runtime.arrays import Bools, Floats, Ints, group_extents
 from ..triangle_mesh import TriangleMesh
-from .components import joined_components
+from .components import vertex_components
 from .halfedges import group_half_edges
 from .vertex_welding import weld_boundaries
 
@@ -48,7 +48,7 @@ class WeldedParts:
         welded = welded.ravel()
         triangles = welded[mesh.triangles]
         triangles = triangles[(triangles != np.roll(triangles, 1, axis=1)).all(axis=1)]
-        labels = joined_components(int(welded.max()) + 1, triangles[:, :2].ravel(), triangles[:, 1:].ravel())
+        labels = vertex_components(triangles, int(welded.max()) + 1)
         return cls(mesh, welded, triangles, labels)
 
     @property

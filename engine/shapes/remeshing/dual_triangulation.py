@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...mesh.connectivity.components import joined_components
+from ...mesh.connectivity.components import vertex_components
 from ...mesh.connectivity.halfedges import group_half_edges
 from ...mesh.connectivity.nonmanifold_vertices import several_fans
 from ...runtime.arrays import Bools, Ints, marked
@@ -114,8 +114,7 @@ def manifold_part(triangles: Ints, vertex_count: int) -> Ints:
         kept = kept[~bad[rest].any(axis=1)]
     if not len(kept):
         return kept
-    a, b, c = triangles[kept].T
-    parts = joined_components(vertex_count, np.concatenate([a, b]), np.concatenate([b, c]))[a]
+    parts = vertex_components(triangles[kept], vertex_count)[triangles[kept, 0]]
     return kept[parts == np.bincount(parts).argmax()]
 
 

@@ -3,7 +3,12 @@
 
 import numpy as np
 
-from engine.mesh.connectivity.components import joined_components, triangle_components, triangle_neighbours
+from engine.mesh.connectivity.components import (
+    joined_components,
+    triangle_components,
+    triangle_neighbours,
+    vertex_components,
+)
 from engine.mesh.connectivity.halfedges import group_half_edges, pair_half_edges
 from tests.messes import together
 from tests.shapes import icosphere, plane
@@ -16,6 +21,11 @@ def test_what_is_joined_in_pairs_hangs_together():
     assert labels[2] == labels[4]
     nothing = np.empty(0, np.int64)
     assert len(set(joined_components(3, nothing, nothing).tolist())) == 3
+
+
+def test_vertices_of_one_triangle_hang_together():
+    triangles = np.array([[0, 1, 2], [4, 5, 1], [6, 7, 8]])
+    assert vertex_components(triangles, 10).tolist() == [0, 0, 0, 1, 0, 0, 2, 2, 2, 3]
 
 
 def test_components_and_neighbours():
