@@ -185,8 +185,10 @@ def _overlapping_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult
         if overlap is None:
             raise
         return overlap.result
-    best = _better(result, overlap)
-    return overlap.doubted(best, x, y) if overlap is not None and best is result and all(cut) else best
+    # Of surfaces as they are and what they share, the more credible counts, or what claims least.
+    if overlap is not None and result.dense.quality.confidence <= _worth(overlap):
+        return overlap.result
+    return overlap.doubted(result, x, y) if overlap is not None and all(cut) else result
 
 
 def _part_steps(overlap: OverlapMatch, pair: PartialPair, task: MatchTask) -> Steps[MatchResult]:
@@ -223,11 +225,6 @@ def _part_steps(overlap: OverlapMatch, pair: PartialPair, task: MatchTask) -> St
     except MatchError:
         return result
     return other if pair.is_better(other, result, CREDIBLE) else result
-
-
-def _better(result: MatchResult, overlap: OverlapMatch | None) -> MatchResult:
-    """Choose between surfaces as they are and what they share: the more credible, or what claims least."""
-    return result if overlap is None or result.dense.quality.confidence > _worth(overlap) else overlap.result
 
 
 def _worth(overlap: OverlapMatch) -> float:
