@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ...geometry.procrustes import nearest_rotations
+from ...geometry.procrustes import nearest_orthogonal
 from ...mesh.closest_points import spatial_order
 from ...mesh.surface_points import SurfacePoints
 from ...mesh.triangle_mesh import TriangleMesh
@@ -166,7 +166,7 @@ class Surroundings:
         )
         moments = np.einsum("kn,kni,knj->kij", weights, y, x)
         moments += np.einsum("kn,kni,knj->kij", weights, places.image_normals[near], places.normals[near])
-        result.rotations[part] = self._handedness * nearest_rotations(self._handedness * moments)
+        result.rotations[part] = nearest_orthogonal(moments, self._handedness)
         result.scales[part], result.sources[part], result.targets[part] = scale, centre, target
 
 
