@@ -227,10 +227,10 @@ def dense_match_steps(pair: RegisteredPair, polish: Stage = POLISH, *, involutio
     credibility = vertex_credibility(quality.orientation, pair.margin, alike, in_place)
     confidences = known.confidence, known_back.confidence
     steps = whole_maps_steps(x.cleaned, y.cleaned, there, back, confidences=confidences, credibility=credibility)
-    whole = yield from within(steps, 0.85, 1.0)
+    whole, whole_back = yield from within(steps, 0.85, 1.0)
     del there, back  # of a million vertices, what is not needed any more counts
-    forward, backward = _on_original(whole.there, y), _on_original(whole.back, x)
-    quality = with_pieces(quality, max(whole.there.alone, whole.back.alone), whole.there.share)
+    forward, backward = _on_original(whole, y), _on_original(whole_back, x)
+    quality = with_pieces(quality, max(whole.alone, whole_back.alone), whole.share)
     if pair.landmarks is not None:
         given, partners = pair.landmarks.source.original, pair.landmarks.target.original
         forward = _at_landmarks(forward, y.original, given, partners)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -39,13 +38,6 @@ class WholeMap:
     share: float
 
 
-class WholeMaps(NamedTuple):
-    """The maps of all vertices of X, and of Y."""
-
-    there: WholeMap
-    back: WholeMap
-
-
 def whole_maps_steps(
     x: CleanSurface,
     y: CleanSurface,
@@ -54,7 +46,7 @@ def whole_maps_steps(
     *,
     confidences: tuple[Floats, Floats],
     credibility: float,
-) -> Steps[WholeMaps]:
+) -> Steps[tuple[WholeMap, WholeMap]]:
     """Extend maps of the main parts to all vertices of the meshes.
 
     Parameters
@@ -70,8 +62,8 @@ def whole_maps_steps(
 
     Returns
     -------
-    WholeMaps
-        Both maps.
+    pair of WholeMap
+        The maps of all vertices of X, and of Y.
 
     Notes
     -----
@@ -84,7 +76,7 @@ def whole_maps_steps(
     yield Progress(0.5, "Mapping every vertex")
     backward = yield from within(follow_steps(y, x, back), 0.5, 1.0)
     forth = _judged(x, forward, backward, credibility * confidences[0], credibility)
-    return WholeMaps(forth, _judged(y, backward, forward, credibility * confidences[1], credibility))
+    return forth, _judged(y, backward, forward, credibility * confidences[1], credibility)
 
 
 def _judged(x: CleanSurface, forward: FollowedMap, backward: FollowedMap, main: Floats, credibility: float) -> WholeMap:

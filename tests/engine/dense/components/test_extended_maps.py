@@ -49,34 +49,33 @@ def with_eyes():
 
 def test_a_mesh_of_one_piece_is_trusted_as_its_map_is():
     surface = clean(TriangleMesh(*BODY))
-    found = maps(surface, itself, mirrored)
+    there, back = maps(surface, itself, mirrored)
     known = judged_map(surface.mesh, surface.mesh, itself(surface.mesh), mirrored(surface.mesh))
-    np.testing.assert_array_equal(found.there.confidence, known.confidence)
-    assert found.there.share == found.back.share == 1
-    assert found.there.alone == 0
+    np.testing.assert_array_equal(there.confidence, known.confidence)
+    assert there.share == back.share == 1
+    assert there.alone == 0
 
 
 def test_pieces_that_lead_home_are_trusted(with_eyes):
-    found = maps(with_eyes, itself, itself)
     eyes = with_eyes.vertex_parts > 0
-    for way in found:
+    for way in maps(with_eyes, itself, itself):
         assert np.abs(way.points.positions - with_eyes.original.vertices).max() < 1e-9
         assert way.confidence[eyes].min() > 0.99
         assert way.share == pytest.approx(1, abs=0.01)
 
 
 def test_pieces_that_go_elsewhere_on_the_way_back_are_not(with_eyes):
-    found = maps(with_eyes, itself, mirrored)
+    there, back = maps(with_eyes, itself, mirrored)
     eyes = with_eyes.vertex_parts > 0
     # Forth each eye goes to itself, back to the other.
-    assert np.abs(found.there.points.positions - with_eyes.original.vertices)[eyes].max() < 1e-9
-    assert np.linalg.norm(found.back.points.positions - with_eyes.original.vertices, axis=1)[eyes].min() > 0.5
-    for way in found:
+    assert np.abs(there.points.positions - with_eyes.original.vertices)[eyes].max() < 1e-9
+    assert np.linalg.norm(back.points.positions - with_eyes.original.vertices, axis=1)[eyes].min() > 0.5
+    for way in (there, back):
         assert way.confidence[eyes].max() < 0.05
 
 
 def test_pieces_count_by_their_area(with_eyes):
-    found = maps(with_eyes, itself, mirrored).there
+    found, _ = maps(with_eyes, itself, mirrored)
     areas = with_eyes.original.vertex_areas
     main = with_eyes.vertex_parts == 0
     of_all = np.average(found.confidence, weights=areas)
@@ -86,7 +85,7 @@ def test_pieces_count_by_their_area(with_eyes):
 
 def test_what_has_no_partner_is_trusted_as_what_it_lies_on_is(with_eyes):
     bare = clean(TriangleMesh(*BODY))
-    found = whole(with_eyes, bare, itself(with_eyes.mesh), itself(bare.mesh)).there
+    found, _ = whole(with_eyes, bare, itself(with_eyes.mesh), itself(bare.mesh))
     eyes = with_eyes.vertex_parts > 0
     assert found.alone > 0.01
     assert 0.05 < found.confidence[eyes].mean() < 0.95
@@ -94,6 +93,6 @@ def test_what_has_no_partner_is_trusted_as_what_it_lies_on_is(with_eyes):
 
 def test_what_the_map_as_a_whole_is_worth_counts_for_pieces_too(with_eyes):
     same = itself(with_eyes.mesh)
-    sure, doubtful = (whole(with_eyes, with_eyes, same, same, part).there for part in (1.0, 0.4))
+    sure, doubtful = (whole(with_eyes, with_eyes, same, same, part)[0] for part in (1.0, 0.4))
     np.testing.assert_allclose(doubtful.confidence, 0.4 * sure.confidence)
     assert doubtful.share == pytest.approx(sure.share)
