@@ -213,6 +213,11 @@ class TriangleMesh:
         renumber = np.cumsum(keep) - 1
         return TriangleMesh(self.vertices[vertices], renumber[self.triangles[triangles]]), vertices, triangles
 
+    def made_of(self, triangles: Bools | Ints) -> tuple[TriangleMesh, Ints]:
+        """Return a mesh of some triangles, given by number or as truth values, and its vertices' numbers here, (k,)."""
+        vertices, corners = np.unique(self.triangles[triangles], return_inverse=True)
+        return TriangleMesh(self.vertices[vertices], corners.reshape(-1, 3)), vertices
+
 
 def check_mesh(mesh: object, name: str = "surface") -> None:
     """Raise an error if what should be a mesh is not: its vertices, say, or None.

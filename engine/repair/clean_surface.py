@@ -78,9 +78,7 @@ class SurfacePart:
         if not self.mesh.triangle_areas[around].any():
             around = kept
         points = np.einsum("kc,kcd->kd", barycentric, self.mesh.vertices[corners[triangles]])
-        used, number = np.unique(corners[around], return_inverse=True)
-        search = ClosestPoints(TriangleMesh(self.mesh.vertices[used], number.reshape(-1, 3)))
-        found = search.nearest(points)
+        found = ClosestPoints(self.mesh.made_of(around)[0]).nearest(points)
         return np.flatnonzero(around)[found.triangles], found.barycentric
 
 

@@ -102,24 +102,16 @@ def _sheets(surface: CleanSurface) -> list[_Sheet]:
     small[0] = False
     pieces = surface.vertex_parts[mesh.triangles]
     triangles = np.flatnonzero(small[pieces[:, 0]] & (pieces == pieces[:, :1]).all(axis=1))
-    if not len(triangles):
+    labels = vertex_components(mesh.triangles[triangles], mesh.vertex_count)[mesh.triangles[triangles, 0]]
+    numbers, first = np.unique(labels, return_index=True)
+    if len(numbers) > _MOST_SHEETS:
         return []
-    used, corners = np.unique(mesh.triangles[triangles], return_inverse=True)
-    corners = corners.reshape(-1, 3)
-    labels = vertex_components(corners, len(used))
-    count = int(labels.max()) + 1
-    if count > _MOST_SHEETS:
-        return []
-    owners = np.zeros(count, np.int64)
-    owners[labels] = surface.vertex_parts[used]
+    owners = pieces[triangles[first], 0]
     sheets = []
-    for number in range(count):
-        own = labels[corners[:, 0]] == number
-        vertices, renumbered = np.unique(corners[own], return_inverse=True)
-        if mesh.triangle_areas[triangles[own]].any():
-            part = TriangleMesh(mesh.vertices[used[vertices]], renumbered.reshape(-1, 3))
-            others = int(np.count_nonzero(owners == owners[number])) > 1
-            sheets.append(_Sheet(part, used[vertices], triangles[own], int(owners[number]), others))
+    for number, owner in zip(numbers, owners, strict=True):
+        own = triangles[labels == number]
+        if mesh.triangle_areas[own].any():
+            sheets.append(_Sheet(*mesh.made_of(own), own, int(owner), np.count_nonzero(owners == owner) > 1))
     return sheets
 
 

@@ -179,6 +179,16 @@ def test_components_are_those_of_the_shape_whatever_the_order():
     assert np.array_equal(labels[new], TriangleMesh(vertices, triangles).component_labels)
 
 
+def test_a_mesh_can_be_made_of_some_triangles():
+    mesh = TriangleMesh(*plane(5))
+    part, vertices = mesh.made_of(np.array([3, 8]))
+    np.testing.assert_array_equal(vertices[part.triangles], mesh.triangles[[3, 8]])
+    np.testing.assert_array_equal(part.vertices, mesh.vertices[vertices])
+    assert (np.diff(vertices) > 0).all()
+    same, _ = mesh.made_of(np.isin(np.arange(mesh.triangle_count), [3, 8]))
+    np.testing.assert_array_equal(same.triangles, part.triangles)
+
+
 def test_parts_of_chosen_vertices_hang_together_by_edges_between_them():
     mesh = TriangleMesh(*plane(5))
     left, right = (mesh.vertices[:, 0] < 0.3, mesh.vertices[:, 0] > 0.7)
