@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any, Protocol
 
 import bpy
@@ -16,6 +17,8 @@ from ..properties.panel_state import progress_of
 from .shown_preview import show_preview
 
 if TYPE_CHECKING:
+    from contextlib import AbstractContextManager
+
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
     from ...engine import Preview, Progress
@@ -75,6 +78,7 @@ class JobOperator(_Operator):
     _job: Job
     _timer: bpy.types.Timer
     _workspace: str
+    _scene = ""  # name of the scene in which it began
     _worked = 0.0  # when the last slice of work ended
     _drawn = 0.0  # when the progress was drawn last
 
@@ -116,6 +120,7 @@ class JobOperator(_Operator):
         progress.cancel, progress.fraction, progress.label = False, 0.0, self._job.progress.label
         self._timer = window_manager_of(context).event_timer_add(_PAUSE, window=context.window)
         self._workspace = context.workspace.name if context.workspace else ""
+        self._scene = context.scene.name if context.scene else ""
         window_manager_of(context).modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -135,7 +140,8 @@ class JobOperator(_Operator):
                 self._show_progress(context)
                 self._worked = time.perf_counter()
                 return {"PASS_THROUGH"}
-            finished = self._finish(context, self._job)
+            with _shown(context, self._scene):
+                finished = self._finish(context, self._job)
         except HierMatchError as error:
             self.cancel(context)
             self.report({"ERROR"}, translated(str(error)))
@@ -170,3 +176,11 @@ class JobOperator(_Operator):
             said = f"{self.doing}: {now.label}, {now.fraction:.0%}    Esc: cancel"
             workspace.status_text_set(translated(said))
         redraw_sidebars(window_manager_of(context))
+
+
+def _shown(context: bpy.types.Context, name: str) -> AbstractContextManager[object]:
+    """Work in a scene, whichever the window shows by now, if there still is one of that name."""
+    scene = bpy.data.scenes.get(name)
+    if scene is None or scene == context.scene:
+        return nullcontext()
+    return context.temp_override(scene=scene, view_layer=scene.view_layers[0])

@@ -193,6 +193,7 @@ class Modal:
     def __init__(self, job):
         manager = bpy.context.window_manager
         self._job, self._workspace, self.prefix = job, bpy.context.workspace.name, "HM"
+        self._scene = bpy.context.scene.name
         self._timer = manager.event_timer_add(0.01, window=bpy.context.window)
         manager.hiermatch.cancel = False
         self.reports = []
@@ -217,6 +218,19 @@ def test_the_timer_drives_it_to_the_end(operator):
     assert operator.reports[-1][0] == "INFO"
     assert "Matched 12 points" in operator.reports[-1][1]
     assert bpy.context.scene.hiermatch.summary.points == QUICK["points"]
+
+
+def test_the_scene_in_which_it_began_tells_of_it_though_another_is_shown(operator):
+    began, other = bpy.context.scene, bpy.data.scenes.new("Other")
+    bpy.context.window.scene = other
+    try:
+        while operator.send("TIMER") == {"PASS_THROUGH"}:
+            pass
+        assert began.hiermatch.summary.points == QUICK["points"]
+        assert not other.hiermatch.summary.points
+    finally:
+        bpy.context.window.scene = began
+        bpy.data.scenes.remove(other)
 
 
 def test_it_shows_how_far_it_is(operator):
