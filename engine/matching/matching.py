@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, least_likeness
 from ..hierarchical.settings import MatchSettings
 from ..mesh.triangle_mesh import TriangleMesh
-from ..runtime.arrays import Bools
+from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.background import can_go_beside
 from ..runtime.errors import MatchError
-from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
-from ..runtime.progress import Progress, Steps, at_once, within
+from ..runtime.parallel_map import shared_steps
+from ..runtime.progress import Progress, Steps, at_once, in_turn, within
 from ..runtime.worker import call_helpers
 from ..shapes.borders import has_border, longest_border
 from ..shapes.known_shapes import KnownShapes
@@ -67,7 +67,8 @@ _HOPELESS = 0.1
 """Confidence that a match of all of two surfaces needs at least to be preferred to one of what they share."""
 
 _SMALL = 8000
-"""Vertices up to which a mesh is prepared sooner than it is sent."""
+"""Vertices up to which a mesh is prepared sooner than it is sent.  Larger ones are prepared in two processes whatever
+their size: what that needs is free again before the most is needed."""
 
 
 @can_go_beside
@@ -248,20 +249,29 @@ def _shapes_steps(
         found = None if known is None else known.find(*item)
         items += [item] if found is None else []
         shapes.append(found)
-    share = shared_steps if all(_SMALL < item[0].vertex_count <= MOST_SENT for item in items) else here_steps
-    prepared = iter(zip(items, (yield from share(_prepared_mesh_steps, None, items)), strict=True))
+    prepared = iter(zip(items, (yield from _prepared_meshes_steps(items)), strict=True))
     return [_new_shape(*next(prepared), known) if shape is None else shape for shape in shapes]
 
 
+def _prepared_meshes_steps(items: list[_Unprepared]) -> Steps[list[PreparedSurface]]:
+    """Prepare meshes, large ones in several processes."""
+    if any(mesh.vertex_count <= _SMALL for mesh, *_ in items):
+        return (yield from in_turn(prepared_steps(mesh, name, excluded=excluded) for mesh, name, excluded in items))
+    # A mesh would be kept where it is sent to, with all that was computed of it.
+    arrays = [((mesh.vertices, mesh.triangles), name, excluded) for mesh, name, excluded in items]
+    found = yield from shared_steps(_prepared_arrays_steps, None, arrays)
+    return [prepared.of_same(item[0]) for item, prepared in zip(items, found, strict=True)]
+
+
 def _new_shape(item: _Unprepared, prepared: PreparedSurface, known: KnownShapes | None) -> Shape:
-    """Make the shape of a mesh that was prepared, maybe in another process."""
-    shape = Shape.of(replace(prepared, original=item[0]))
+    """Make the shape of a mesh that was prepared."""
+    shape = Shape.of(prepared)
     if known is not None:
         known.keep(*item, shape)
     return shape
 
 
-def _prepared_mesh_steps(_: None, given: _Unprepared) -> Steps[PreparedSurface]:
-    """Prepare a mesh."""
-    mesh, name, excluded = given
-    return (yield from prepared_steps(mesh, name, excluded=excluded))
+def _prepared_arrays_steps(_: None, given: tuple[tuple[Floats, Ints], str, Bools | None]) -> Steps[PreparedSurface]:
+    """Prepare a mesh, given by its arrays."""
+    arrays, name, excluded = given
+    return (yield from prepared_steps(TriangleMesh(*arrays), name, excluded=excluded))

@@ -65,6 +65,17 @@ class PreparedSurface:
             is_reflected=not self.is_reflected,
         )
 
+    def of_same(self, original: TriangleMesh) -> PreparedSurface:
+        """Take a mesh for the original that has the same arrays: only one of the two is kept then."""
+        old, cleaned, proxy = self.original, self.cleaned, self.proxy
+        pieces = tuple(replace(piece, mesh=original) if piece.mesh is old else piece for piece in cleaned.pieces)
+        return replace(
+            self,
+            original=original,
+            cleaned=replace(cleaned, original=original if cleaned.original is old else cleaned.original, pieces=pieces),
+            proxy=replace(proxy, mesh=original) if proxy.mesh is old else proxy,
+        )
+
     def as_given(self, positions: Floats) -> Floats:
         """Find where points of the surface (k, 3) are on the mesh that was given, (k, 3), if this is its reflection."""
         return reflected_positions(positions) if self.is_reflected else positions

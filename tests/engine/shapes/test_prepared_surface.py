@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """From a mesh to what is matched of it, and back."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 
@@ -50,6 +52,26 @@ def test_a_clean_mesh_is_matched_as_it_is(body):
         np.testing.assert_allclose(there.positions, points.positions, atol=1e-9)
     values = np.random.default_rng(0).normal(size=(3, body.vertex_count))
     np.testing.assert_array_equal(surface.spread(values, np.inf), values)
+
+
+def test_what_was_prepared_in_another_process_keeps_no_second_mesh(body, dense):
+    for surface in (prepared(body), dense):
+        original = surface.original
+        sent = deepcopy(surface)
+        assert sent.original is not original
+        same = sent.of_same(original)
+        assert same.original is same.cleaned.original is same.cleaned.mesh is original
+        assert (same.mesh is original) == surface.is_whole
+        np.testing.assert_array_equal(same.vertices, surface.vertices)
+
+
+def test_only_what_takes_part_of_a_mesh_is_kept_beside_it(body):
+    excluded = body.vertices[:, 2] > np.median(body.vertices[:, 2])
+    surface = prepared(body, excluded=excluded)
+    same = deepcopy(surface).of_same(body)
+    assert same.original is body
+    assert same.cleaned.original.triangle_count == len(surface.kept_triangles) < body.triangle_count
+    np.testing.assert_array_equal(same.vertices, surface.vertices)
 
 
 def test_a_dense_mesh_is_matched_through_a_coarse_one(dense):
