@@ -39,6 +39,7 @@ from ..scene.shape_key_io import (
     shape_key_names,
 )
 from .finite_values import without_broken
+from .wrap import is_wrap_key
 
 if TYPE_CHECKING:
     import bpy
@@ -77,7 +78,7 @@ class ShapeKeyTransfer(Transfer):
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the source's keys, and make sure that they can be written on the target."""
-        chosen = self._chosen(source)
+        chosen = self._chosen(source, target)
         for part in parts_of(target):
             self._read_target(context, source, part, chosen)
         names = [name for name in chosen if any(name in written for written in self._written)]
@@ -169,9 +170,11 @@ class ShapeKeyTransfer(Transfer):
         done = [counted(len(self._keys), "shape key"), *dict.fromkeys(done)]
         return TransferReport(", ".join(done), tuple(self._notes))
 
-    def _chosen(self, source: Side) -> list[str]:
-        """Names of the keys to carry, in the order of the source."""
-        names = all_key_names(source)
+    def _chosen(self, source: Side, target: Side) -> list[str]:
+        """Names of the keys to carry, in the order of the source; what lays it onto the target stays there."""
+        names = list(all_key_names(source))
+        if self._settings.choice == "ALL":
+            names = [name for name in names if not is_wrap_key(name, target.name)]
         if not names:
             raise NothingToCarryError(
                 f'"{source.name}" has no shape keys beside the basis, so there are none to carry over.'
@@ -190,7 +193,7 @@ class ShapeKeyTransfer(Transfer):
             if unknown:
                 raise ObjectError(f'"{source.name}" has no shape key {listed(unknown)}. Check the Names.')
             return [name for name in names if name in self._settings.names]
-        return list(names)
+        return names
 
     def _animate(self, source: Side, target: bpy.types.Object, names: list[str], *, absolute: bool) -> list[str]:
         """Copy the drivers of the keys that were written, and share their action; say what was done."""

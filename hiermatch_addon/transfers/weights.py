@@ -157,8 +157,8 @@ class WeightTransfer(Transfer):
             parts = zip(parts_of(target), vertex_ranges(target), strict=True)
             torn = listed([part.name for part, own in parts if self._torn[own].any()])
             self._notes.append(
-                f"Weights of {counted(filled, 'vertex')} of {torn} were filled in from the neighbors, far "
-                f'from whose places on "{source.name}" the map had led.'
+                f"Weights of {counted(filled, 'vertex')} of {torn} were taken from their neighbors: the map leads "
+                f'them astray, far from these on "{source.name}".'
             )
         return TransferReport(
             counted(int((self._read_task.chosen & ~columns.locked).sum()), "vertex group"), tuple(self._notes)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.wrap import WrapSettings
 
-__all__ = ["WrapTransfer", "wrap_key_name"]
+__all__ = ["WrapTransfer", "is_wrap_key", "wrap_key_name"]
 
 _LEAST_HELD = 0.9
 """If less of the vertices lies on the other mesh, that is told."""
@@ -48,6 +49,11 @@ _MOST_FOLDED = 0.002
 def wrap_key_name(other: str) -> str:
     """Return the name of the shape key that wraps a mesh to another of that name."""
     return shortened(f"Wrap to {other}", LONGEST_KEY - len(" 15/16"))  # with the number of an in-between
+
+
+def is_wrap_key(name: str, other: str) -> bool:
+    """Tell whether a shape key lays a mesh onto another of that name, or goes part of the way."""
+    return re.fullmatch(re.escape(wrap_key_name(other)) + r"( \d+/\d+)?", name) is not None
 
 
 class WrapTransfer(Transfer):

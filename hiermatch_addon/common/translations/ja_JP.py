@@ -2508,7 +2508,7 @@ MESSAGES: Final[dict[str, str]] = {
         '"{1}"の何も動かさないボーンの"{0}"の頂点グループは空になりました: {2}。'
     ),
     (
-        'Weights of {0} of {1} were filled in from the neighbors, far from whose places on "{2}" the map had led.'
+        'Weights of {0} of {1} were taken from their neighbors: the map leads them astray, far from these on "{2}".'
     ): "{1}の{0}のウェイトは、マップが「{2}」上の離れた場所を指していたため、周囲から補いました。",
     '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
         "「{1}」の{0}には有限の数でない値があるため、省かれました。値を修正してください。"

@@ -2036,7 +2036,7 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}" 中不带动 "{1}" 任何部分的骨骼的顶点组已被清空：{2}。'
     ),
     (
-        'Weights of {0} of {1} were filled in from the neighbors, far from whose places on "{2}" the map had led.'
+        'Weights of {0} of {1} were taken from their neighbors: the map leads them astray, far from these on "{2}".'
     ): "{1} 的 {0} 的权重由邻近部分补齐，因为映射在“{2}”上指向了远处。",
     '{0} of "{1}" was left out, because of values that are not finite numbers. Repair them.': (
         "“{1}”的{0}含有不是有限数的值，因此被略去。请修复这些值。"

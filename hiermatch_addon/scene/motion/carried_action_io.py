@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
@@ -14,12 +15,13 @@ from ..plain_settings import written_settings
 from .action_curves import MADE_FOR, every_curve, playing
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
 __all__ = [
     "carried_before",
     "mark_carried",
     "put_aside",
+    "still_as_made",
     "to_be_replaced",
     "users_beside",
     "was_carried",
@@ -100,6 +102,15 @@ def users_beside(action: bpy.types.Action, armature: bpy.types.Object) -> list[s
 def was_edited(action: bpy.types.Action) -> bool:
     """Tell whether an action was edited since it was made."""
     return cast("Any", action)[_STATE] != _state(action)
+
+
+@contextmanager
+def still_as_made(actions: Iterable[bpy.types.Action]) -> Iterator[None]:
+    """Do not take for an edit what is done meanwhile to actions, such as naming the bones that they move anew."""
+    unedited = [action for action in actions if _STATE in cast("Any", action) and not was_edited(action)]
+    yield
+    for action in unedited:
+        cast("Any", action)[_STATE] = _state(action)
 
 
 def put_aside(action: bpy.types.Action) -> str:

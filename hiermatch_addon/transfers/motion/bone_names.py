@@ -14,6 +14,7 @@ from ...common.phrases import listed
 from ...properties.bone_pairs import bone_pairs_of, rows_of
 from ...scene.armatures import armature_of, read_skeleton
 from ...scene.motion.action_curves import actions_of, bone_curves, renamed_paths
+from ...scene.motion.carried_action_io import still_as_made
 from ...scene.shape_key_io import keys_of
 from .name_tables import NAME_TABLES
 
@@ -112,15 +113,16 @@ def rename_bones(scene: bpy.types.Scene, armature: bpy.types.Object, names: Mapp
     # Blender lets vertex groups, constraints, drivers and what is played follow.  In two steps, so that names may be
     # exchanged.
     passing = {old: f"hiermatch {number}" for number, old in enumerate(changed)}
-    for old, between in passing.items():
-        bones[old].name = between
-    for old, between in passing.items():
-        bones[between].name = changed[old]
-    for curve, path, group, group_name in paths:
-        if curve.data_path != path:
-            curve.data_path = path
-        if group is not None and group.name != group_name:
-            group.name = group_name
+    with still_as_made(actions_of(armature)):
+        for old, between in passing.items():
+            bones[old].name = between
+        for old, between in passing.items():
+            bones[between].name = changed[old]
+        for curve, path, group, group_name in paths:
+            if curve.data_path != path:
+                curve.data_path = path
+            if group is not None and group.name != group_name:
+                group.name = group_name
     for place, name, new in places:
         setattr(place, name, new)
     for row, sides in rows:

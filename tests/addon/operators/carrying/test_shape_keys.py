@@ -84,6 +84,16 @@ def test_settings_of_keys_come_along(pair):
     assert np.abs(offsets_of(target, "Lift")).max() == pytest.approx(0.1, rel=0.2)
 
 
+def test_the_key_that_lays_the_source_onto_the_target_stays_there(pair):
+    source = pair[0]
+    for name in ("Wrap to Target", "Wrap to Target 1/2", "Wrap to Target Practice"):
+        add_key(source, name, np.full((len(source.data.vertices), 3), 0.1))
+    assert carry() == {"FINISHED"}
+    assert names(pair[1]) == ["Basis", "Swell", "Lift", "Wrap to Target Practice"]
+    assert carry(key_choice="NAMED", key_names="Wrap to Target") == {"FINISHED"}
+    assert "Wrap to Target" in names(pair[1])
+
+
 def test_keys_relative_to_one_left_behind_move_alone(pair):
     source, target = pair
     keys = source.data.shape_keys.key_blocks

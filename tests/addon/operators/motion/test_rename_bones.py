@@ -123,6 +123,22 @@ def test_as_the_bones_of_the_source_are_called(monkeypatch):
     )
 
 
+@pytest.mark.parametrize("edited", [False, True])
+def test_names_alone_are_no_edit_of_what_was_carried(monkeypatch, edited):
+    match_at_once(monkeypatch)
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    add_action(source)
+    bpy.ops.hiermatch.retarget_action(source="A", target="B")
+    made = target.animation_data.action
+    if edited:
+        next(iter(curves_of(made).values())).keyframe_points[0].co[1] += 0.1
+    rename(source="A", target="B", names="SOURCE")
+    bpy.ops.hiermatch.retarget_action(source="A", target="B")
+    assert ("Wave B (edited)" in bpy.data.actions) == edited
+    assert (target.animation_data.action == made) != edited
+
+
 def test_refusals_change_nothing():
     armature, _ = add_person("B")
     armature.data.bones["toe.L"].name = "thigh_l"
