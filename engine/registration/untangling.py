@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import cg
 
 from ..geometry.symmetric_factor import symmetric_factor
 from ..mesh.closest_points import ClosestPoints
@@ -21,6 +22,9 @@ _HELPED = (
     0.9  # part of them that rounds up to averaging may leave: by hand, on cats whose edges are split into 8 and 16
 )
 _ITERATIONS = 8
+_FACTORED = 10_000  # unknowns up to which factors solve the equations of a step sooner, tried on bodies of a million
+_RESIDUAL = 1e-3  # relative one at which more of them are solved
+_DESCENTS = 100  # conjugate gradient steps at most for that: some fifty are taken
 _LEAST_AREA = 0.2  # part of its own area, in the scale of the target, that a triangle's image should have
 _SMALLEST = 0.01  # part of the mean area from which on a triangle counts: one without area has no side to be on
 _TETHER = 1e-3  # weight of staying in place, squared distances in units of the mean area, against the areas that lack
@@ -244,5 +248,13 @@ def _opened(image: _Image, rest: Floats, free: Ints) -> Floats:
         jacobian = csr_array(entries, shape=(len(starts) - 1, len(unknowns)))
         back = _TETHER * (image.positions - now)[free].ravel() / held
         pull = jacobian.T @ np.append((lack * np.sqrt(rest))[lacking], back)
-        now[free] += symmetric_factor(jacobian.T @ jacobian).solve(pull).reshape(-1, 3)
+        now[free] += _solved(jacobian.T @ jacobian, pull).reshape(-1, 3)
     return now[free]
+
+
+def _solved(system: csr_array, right: Floats) -> Floats:
+    """Solve positive definite equations of few neighbours each: many of them by conjugate gradients."""
+    if len(right) <= _FACTORED:
+        return symmetric_factor(system).solve(right)
+    solution: Floats = cg(system, right, rtol=_RESIDUAL, maxiter=_DESCENTS, M=diags_array(1 / system.diagonal()))[0]
+    return solution

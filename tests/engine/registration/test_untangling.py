@@ -70,6 +70,21 @@ def test_a_knot_is_untied_and_the_rest_left_alone():
     assert np.linalg.norm(reached - source.vertices, axis=1).max() < 0.3
 
 
+def test_thousands_of_knots_are_untied_as_few_are():
+    mesh = TriangleMesh(*icosphere(48))
+    random = np.random.default_rng(0)
+    edges = mesh.edges[random.choice(len(mesh.edges), 3000, replace=False)]
+    images = np.arange(mesh.vertex_count)
+    images[edges] = images[edges[:, ::-1]]  # neighbours exchanged
+    points = SurfacePoints.at_vertices(mesh, images)
+    triangles, barycentric = points.triangles.copy(), points.barycentric.copy()
+    assert len(flipped_triangles(mesh, mesh, triangles, barycentric)) > 5000
+    run(untangle_steps(mesh, mesh, triangles, barycentric, search=ClosestPoints(mesh)))
+    assert len(flipped_triangles(mesh, mesh, triangles, barycentric)) == 0
+    reached = SurfacePoints.from_barycentric(mesh, triangles, barycentric).positions
+    assert np.abs(reached - mesh.vertices).max() < 2 * mesh.edge_lengths.max()
+
+
 def test_only_triangles_that_count_are_untied():
     source, target, search, found = mapped_sphere()
     random = np.random.default_rng(0)
