@@ -22,7 +22,7 @@ _HELPED = (
     0.9  # part of them that rounds up to averaging may leave: by hand, on cats whose edges are split into 8 and 16
 )
 _ITERATIONS = 8
-_FACTORED = 10_000  # unknowns up to which factors solve the equations of a step sooner, tried on bodies of a million
+_FACTORED = 2000  # unknowns up to which factors solve the equations of a step sooner, by hand, on people
 _RESIDUAL = 1e-3  # relative one at which more of them are solved
 _DESCENTS = 100  # conjugate gradient steps at most for that: some fifty are taken
 _LEAST_AREA = 0.2  # part of its own area, in the scale of the target, that a triangle's image should have
