@@ -70,6 +70,23 @@ def test_clothes_of_a_wider_body_keep_their_distance_and_their_order():
     assert (np.einsum("ki,ki->k", over.vertices - feet, over.vertex_normals) > 0).all()
 
 
+def test_of_two_items_that_one_is_inner_that_the_other_lies_over():
+    """A jacket is close to the skin but for its hem, which hangs over a skirt; there the other body has a bump."""
+    ring = ball(14, 1.06)
+    skirt = ring.submesh(np.abs(ring.vertices[:, 2] + 0.45) < 0.35)[0]
+    jacket = cap(ball(14, 1.03), -0.4)
+    hem = jacket.vertices[:, 2] < -0.05
+    jacket = TriangleMesh(jacket.vertices * np.where(hem, 1.09 / 1.03, 1.0)[:, None], jacket.triangles)
+    bump = np.exp(-np.square(BODY.vertices - [0.0, -1.0, -0.25]).sum(axis=1) / 0.05)
+    target = TriangleMesh(BODY.vertices * (1 + 0.2 * bump)[:, None], BODY.triangles)
+    items = [WornItem(jacket), WornItem(skirt)]
+    over, under = run(wear_steps(BODY, target, SurfaceMap.identity(target), BODY.vertices, items))
+    below = TriangleMesh(under.positions, skirt.triangles)
+    lying = jacket.vertices[:, 2] < -0.2
+    assert under.pushed.max() > 0.05
+    assert np.nanmin(above(below, over.positions[lying])) > 0
+
+
 def test_nothing_pokes_through_where_the_body_has_grown_a_bump():
     # The map knows nothing of the bump: it takes the body to itself, and the bump comes on top.
     images = BODY.vertices.copy()
