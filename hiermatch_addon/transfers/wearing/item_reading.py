@@ -72,6 +72,7 @@ def read_item(
     """
     names = () if rig is None else rig.names
     stored: Any = cast("Any", item).hiermatch_wear
+    held = _bone_of(item, source) in names
     mesh = read_mesh(item, depsgraph, use_modifiers=False)
     weights = read_weights(item)
     own = _own_weights(item, weights, source, names)
@@ -84,7 +85,7 @@ def read_item(
     worn = WornItem(
         mesh,
         bones,
-        stored.fit,
+        "RIGID" if held and stored.fit == "AUTO" else stored.fit,  # on its own body it cannot bend
         rigid=None if rigid is None else rigid > 0.5,
         find_rigid=stored.find_rigid,
         tightness=tightness,
@@ -92,7 +93,6 @@ def read_item(
         margin=clearance,
     )
     state = topology(mesh_of(item)), position_digest(mesh_of(item))
-    held = _bone_of(item, source) in names
     return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own, held)
 
 

@@ -7,10 +7,12 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
+import pytest
 from hiermatch.engine import Progress
 from hiermatch.hiermatch_addon.transfers.wearing import item_motion
 from mathutils import Vector
 from scipy.sparse import csr_array
+from scipy.spatial.distance import pdist
 
 from tests.addon.garments import fitted, in_world, wear
 from tests.addon.rigs import add_armature
@@ -102,18 +104,41 @@ def test_bones_of_an_item_come_along_onto_the_other_rig(dressed_pair):
     )
 
 
+def bind(obj, rig):
+    for name in ("neck", "tail"):
+        obj.vertex_groups.new(name=name).add(range(len(obj.data.vertices)), 0.5, "REPLACE")
+    obj.modifiers.new("Armature", "ARMATURE").object = rig
+
+
+def hang(obj, rig):
+    """Let an object hang on a bone as a whole, where it stands."""
+    stood = obj.matrix_world.copy()
+    obj.parent, obj.parent_type, obj.parent_bone = rig, "BONE", "neck"
+    bpy.context.view_layer.update()
+    obj.matrix_world = stood
+
+
+@pytest.mark.parametrize(("fit", "bends"), [("AUTO", False), ("LOOSE", True)])
+def test_what_hangs_on_a_bone_cannot_bend_and_is_not_bent_unless_it_is_asked_for(dressed_pair, fit, bends):
+    """As swords and helmets do, which are far too large to be found by themselves."""
+    source, target, shirt, _ = dressed_pair
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    bind(source, rigs[0])
+    bind(target, rigs[1])
+    hang(shirt, rigs[0])
+    shirt.hiermatch_wear.fit = fit
+    assert wear("Shirt", wear_poses=False) == {"FINISHED"}
+    before, after = (pdist(in_world(obj)) for obj in (shirt, fitted("Shirt")))
+    assert (np.ptp(after / before) > 0.01) == bends
+
+
 def test_an_item_that_hangs_on_a_bone_is_moved_by_it_alone_and_fitted_at_rest(dressed_pair):
     """As helmets and glasses are in files for games."""
     source, target, shirt, _ = dressed_pair
     rigs = [add_armature("Rig A"), add_armature("Rig B")]
-    for obj, rig in ((source, rigs[0]), (target, rigs[1])):
-        for name in ("neck", "tail"):
-            obj.vertex_groups.new(name=name).add(range(len(obj.data.vertices)), 0.5, "REPLACE")
-        obj.modifiers.new("Armature", "ARMATURE").object = rig
-    stood = shirt.matrix_world.copy()
-    shirt.parent, shirt.parent_type, shirt.parent_bone = rigs[0], "BONE", "neck"
-    bpy.context.view_layer.update()
-    shirt.matrix_world = stood
+    bind(source, rigs[0])
+    bind(target, rigs[1])
+    hang(shirt, rigs[0])
     found = []
     for turn in (0.0, 1.2):
         rigs[0].pose.bones["neck"].rotation_mode = "XYZ"
