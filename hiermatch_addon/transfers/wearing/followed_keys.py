@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from ....engine import ClosestPoints
 from ...common.access import mesh_of
 from ...common.phrases import listed
 from ...scene.character import parts_of
@@ -29,9 +30,10 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
+    from ....engine import TriangleMesh
     from ...scene.character import Side
 
-__all__ = ["BodyKeys", "read_body_keys", "write_followed"]
+__all__ = ["BodyKeys", "apart_from", "read_body_keys", "write_followed"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +54,21 @@ class BodyKeys:
     offsets: NDArray[np.float64]
     notes: tuple[str, ...] = ()
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the keys are called."""
+        return tuple(one.name for one in self.settings)
 
-def read_body_keys(context: bpy.types.Context, body: Side) -> BodyKeys:
-    """Read the shape keys of all parts of a body that clothes can follow: not those that draw it in below them."""
+    def shown_on(self, vertices: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Move the vertices of the body, (n, 3), by as much as the keys are on."""
+        return vertices + np.tensordot([one.value for one in self.settings], self.offsets, axes=1)
+
+
+def read_body_keys(context: bpy.types.Context, body: Side, *, shown: bool = False) -> BodyKeys:
+    """Read the shape keys of all parts of a body that clothes can follow: not those that draw it in below them.
+
+    If wanted, only those that are on, of what is `shown`.
+    """
     absolute = [part.name for part in parts_of(body) if (keys := keys_of(part)) is not None and not keys.use_relative]
     names = [name for name in all_key_names(body) if name != COVERED and key_holder(body, name).name not in absolute]
     settings: list[KeySettings] = []
@@ -62,12 +76,38 @@ def read_body_keys(context: bpy.types.Context, body: Side) -> BodyKeys:
     for name in names:
         keys = cast("bpy.types.Key", keys_of(key_holder(body, name)))
         read = KeySettings.of(keys.key_blocks[name], ())
+        if shown and (read.mute or not read.value):
+            continue
         settings.append(replace(read, vertex_group="", relative_to=""))
         moved = [_moved(context, part, name, without=absolute) for part in parts_of(body)]
         offsets.append(np.concatenate(moved))
     note = f"Absolute shape keys are not followed: those of {listed(absolute)}." if absolute else ""
-    shape = (len(names), sum(len(mesh_of(part).vertices) for part in parts_of(body)), 3)
+    shape = (len(settings), sum(len(mesh_of(part).vertices) for part in parts_of(body)), 3)
     return BodyKeys(tuple(settings), np.array(offsets).reshape(shape), (note,) if note else ())
+
+
+def apart_from(keys: BodyKeys, body: TriangleMesh, item: bpy.types.Object, places: NDArray[np.float64]) -> BodyKeys:
+    """Return those of a body's keys that move it below an item that does not follow them.
+
+    It follows those of which it has its own, and all if it is bound to the surface of a body.
+
+    Parameters
+    ----------
+    keys : BodyKeys
+        The keys.
+    body : TriangleMesh
+        The body without them.
+    item : bpy.types.Object
+        The item.
+    places : (n, 3) array of float
+        Its vertices.
+    """
+    bound = any(modifier.type == "SURFACE_DEFORM" for modifier in item.modifiers)
+    below = np.unique(body.triangles[ClosestPoints(body).nearest(places).triangles])
+    own = shape_key_names(item)
+    moving = keys.offsets[:, below].any(axis=(1, 2))
+    kept = [number for number in np.flatnonzero(moving) if not bound and keys.settings[number].name not in own]
+    return BodyKeys(tuple(keys.settings[number] for number in kept), keys.offsets[kept])
 
 
 def write_followed(copy: bpy.types.Object, body: Side, keys: BodyKeys, offsets: NDArray[np.float64]) -> list[str]:

@@ -19,7 +19,7 @@ from ...scene.pair import named_object
 from ...scene.posing.before_after import show_after
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
-from ...scene.worn.garments import bound_items, check_item, dressed_at_rest
+from ...scene.worn.garments import bound_items, check_item
 from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
@@ -27,7 +27,7 @@ from ..weights import WeightTransfer
 from .body_below import cover_body, worn_already
 from .fit_colors import write_colors
 from .fit_report import done, doubt
-from .followed_keys import read_body_keys, write_followed
+from .followed_keys import apart_from, read_body_keys, write_followed
 from .item_bones import ItemBones, read_item_bones
 from .item_motion import ItemMotion
 from .item_reading import check_place, read_item, still_there
@@ -65,7 +65,8 @@ class WearTransfer(Transfer):
         self._settings = settings
         self._items: list[ReadItem] = []
         self._first: list[WeightTransfer | RigTransfer] = []
-        self._posed: NDArray[np.float64] | None = None
+        self._worn_on: list[tuple[str, ...] | None] = []
+        self._bodies: dict[tuple[str, ...] | None, NDArray[np.float64]] = {}
         self._every: NDArray[np.int64] | None = None
         self._rig: SourceRig | None = None
         self._moving: ItemMotion | None = None
@@ -90,18 +91,22 @@ class WearTransfer(Transfer):
                 check_weights_writable(part)
                 check_keys_writable(part, [])
         self._rig = read_rig(source)
-        if any(not dressed_at_rest(item, source) for item in chosen):
-            self._posed = _posed(context, source)
         body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
         if isinstance(source, Character) and source.left_out:
             self._every = read_surface(whole(source), depsgraph, use_modifiers=False).triangles
         if settings.keys and settings.result == "OBJECT":
             self._keys = read_body_keys(context, target)
             self._notes.extend(self._keys.notes)
-        for item in chosen:
-            self._items.append(read_item(depsgraph, item, source, self._rig, settings.clearance))
-            around = body.vertices if self._items[-1].at_rest or self._posed is None else self._posed
-            check_place(self._items[-1], TriangleMesh(around, body.triangles), other, source, target)
+        shown = read_body_keys(context, source, shown=True)
+        for obj in chosen:
+            read = read_item(depsgraph, obj, source, self._rig, settings.clearance)
+            keys = apart_from(shown, body, obj, read.worn.mesh.vertices)
+            worn_on = keys.names if read.at_rest else None
+            if worn_on not in self._bodies:
+                self._bodies[worn_on] = keys.shown_on(body.vertices) if read.at_rest else _posed(context, source)
+            check_place(read, TriangleMesh(self._bodies[worn_on], body.triangles), other, source, target)
+            self._items.append(read)
+            self._worn_on.append(worn_on)
         if settings.result == "OBJECT":
             self._read_rigs(context, source, target)
 
@@ -159,20 +164,17 @@ class WearTransfer(Transfer):
         self._motion = _overall_motion(pair.source, registered)
         self._fitted = [cast("Any", None)] * len(self._items)
         bones = None if self._rig is None else self._rig.weights
-        for at_rest in (True, False):
-            numbers = [number for number, item in enumerate(self._items) if item.at_rest == at_rest]
-            if not numbers:
-                continue
-            body = pair.source
-            if not at_rest and self._posed is not None:
-                body = TriangleMesh(self._posed, body.triangles)
+        share = (0.9 - start) / len(self._bodies)
+        for keys, vertices in self._bodies.items():
+            numbers = [number for number, worn_on in enumerate(self._worn_on) if worn_on == keys]
+            body = pair.source if keys == () else TriangleMesh(vertices, pair.source.triangles)
             worn = [self._items[number].worn for number in numbers]
             every = None if self._every is None else TriangleMesh(body.vertices, self._every)
             made = wear_steps(body, pair.target, there, registered, worn, bones=bones, whole=every)
-            found = yield from within(made, start, 0.9)
+            found = yield from within(made, start, start + share)
             for number, fitted in zip(numbers, found, strict=True):
                 self._fitted[number] = fitted
-            start = 0.9
+            start += share
         if self._moving is not None:
             yield from within(self._moving.steps(passage, self._items, self._fitted), 0.9, 1.0)
             self._fitted = self._moving.fitted

@@ -171,3 +171,26 @@ def test_keys_of_an_item_that_the_body_drives_are_driven_by_the_other_body(dress
         'key_blocks["Tail"].value': source.data.shape_keys,
     }
     assert f'still read from "{source.data.shape_keys.name}"' in bpy.context.scene.hiermatch_retarget.report.notes
+
+
+@pytest.mark.parametrize("follows", ["", "key", "surface"])
+def test_an_item_lies_on_a_body_as_its_keys_show_it_unless_it_follows_them(dressed_pair, follows):
+    """As where characters are made by keys that are on, such as a belly, and clothes are made on them."""
+    source, _, shirt, _ = dressed_pair
+    assert wear("Shirt") == {"FINISHED"}
+    expected = in_world(fitted("Shirt"))
+    chosen = add_belly(source)
+    key = source.data.shape_keys.key_blocks["Belly"]
+    key.slider_max = key.value = 2
+    if follows == "key":
+        shirt.shape_key_add(name="Basis")
+        shirt.shape_key_add(name="Belly", from_mix=False)
+    elif follows == "surface":
+        shirt.modifiers.new("Follow", "SURFACE_DEFORM").target = source
+    else:
+        moved = positions(shirt)
+        moved[chosen] += 0.2 * np.array([vertex.normal for vertex in source.data.vertices])[chosen]
+        shirt.data.vertices.foreach_set("co", moved.astype(np.float32).ravel())
+    bpy.context.view_layer.update()
+    assert wear("Shirt") == {"FINISHED"}
+    np.testing.assert_allclose(in_world(fitted("Shirt")), expected, atol=0.05)
