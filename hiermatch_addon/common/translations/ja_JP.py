@@ -1604,6 +1604,10 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"のドライバーはまだ{1}を参照しています。"{2}"に必要なものがありません。リターゲットでシェイ'
         "プキーやボーンを移してから、もう一度合わせてください。"
     ),
+    'Modifiers of "{0}" still use {1}, as those of the original do. Put a copy of it where "{2}" is, and pick that.': (
+        '"{0}"のモディファイアーは、元のものと同じく、まだ{1}を使っています。"{2}"のある所にその複製を置き、それを選んで'
+        "ください。"
+    ),
     "Mend in Poses": "ポーズで補正",
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (

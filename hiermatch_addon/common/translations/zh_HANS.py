@@ -1310,6 +1310,9 @@ MESSAGES: Final[dict[str, str]] = {
     "Retarget, and fit it again.": (
         '"{0}" 的驱动器仍读取 {1}："{2}" 没有它们所需的内容。请用重定向传递其形态键或骨骼，然后重新适配。'
     ),
+    'Modifiers of "{0}" still use {1}, as those of the original do. Put a copy of it where "{2}" is, and pick that.': (
+        '"{0}" 的修改器和原物体一样仍使用 {1}。请在 "{2}" 所在处放置其副本，并选用该副本。'
+    ),
     "Mend in Poses": "在姿势中修正",
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (

@@ -35,9 +35,10 @@ from .fitted_copies import (
     was_edited,
 )
 from .garment_shape_io import mirror_axes
+from .modifier_pointers import point_to
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Container, Mapping, Sequence
+    from collections.abc import Collection, Container, Sequence
 
     from numpy.typing import NDArray
 
@@ -55,9 +56,6 @@ __all__ = [
 
 _SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
 """Types of objects that have a shape."""
-
-_SIZES = {"SOLIDIFY": ("thickness",), "BEVEL": ("width",), "DISPLACE": ("strength",)}
-"""For each type of modifier the members that are lengths."""
 
 
 def bound_items(context: bpy.types.Context, body: Side) -> list[bpy.types.Object]:
@@ -263,7 +261,7 @@ def fitted_copy(
     for part in parts_of(source):
         places |= counterparts(part, largest, find_armature(source), find_armature(target))
     places[item] = copy  # also of one that is part of the body
-    _point_to(copy, places, growth)
+    point_to(copy, item, places, growth)
     keys = keys_of(copy)
     theirs: list[bpy.types.ID] = []
     every: dict[bpy.types.ID, list[bpy.types.ID]] = {mine: [other] for mine, other in places.items()}
@@ -361,20 +359,3 @@ def _collection_of(scene: bpy.types.Scene, body: Side) -> bpy.types.Collection:
     if made not in scene.collection.children_recursive:
         scene.collection.children.link(made)
     return made
-
-
-def _point_to(copy: bpy.types.Object, places: Mapping[bpy.types.ID, bpy.types.ID], growth: float) -> None:
-    """Let modifiers of a copy point to what belongs to the other body, and sizes grow."""
-    for modifier in copy.modifiers:
-        changed: Any = modifier
-        for member in _pointers(modifier):
-            value = getattr(changed, member)
-            if value in places:
-                setattr(changed, member, places[value])
-        for member in _SIZES.get(modifier.type, ()):
-            setattr(changed, member, growth * getattr(changed, member))
-
-
-def _pointers(modifier: bpy.types.Modifier) -> list[str]:
-    """Return the members of a modifier that point to something."""
-    return [prop.identifier for prop in modifier.bl_rna.properties if prop.type == "POINTER" and not prop.is_readonly]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....engine import TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
 from ...common.errors import NothingToCarryError, ObjectError
-from ...common.phrases import counted
+from ...common.phrases import counted, listed
 from ...jobs.transfer import Transfer, TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
 from ...scene.character import Character, parts_of, read_surface, whole
@@ -20,6 +20,7 @@ from ...scene.posing.before_after import show_after
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
 from ...scene.worn.garments import bound_items, check_item
+from ...scene.worn.modifier_pointers import left_behind
 from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
@@ -215,6 +216,12 @@ class WearTransfer(Transfer):
                 as_fitted(made, target)
             remarks.append(done(item.name, fitted, is_body=item.name in self._ends))
             notes.extend(filter(None, [doubt(item.name, fitted)]))
+        notes.extend(
+            f'Modifiers of "{copy.name}" still use {listed(kept)}, as those of the original do. Put a copy of it where '
+            f'"{target.name}" is, and pick that.'
+            for copy in copies
+            if (kept := left_behind(copy, target))
+        )
         remarks.extend(
             f'"{name}" counts as part of the body as well: "{source.name}" has no skin below it.' for name in self._ends
         )
