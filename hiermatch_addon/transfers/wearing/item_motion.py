@@ -26,7 +26,7 @@ from ...scene.armatures import SourceRig
 from .item_weights import ItemWeights, chosen_weights, in_columns, replaced, within_limit
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from collections.abc import Set as AbstractSet
 
     from numpy.typing import NDArray
@@ -66,9 +66,9 @@ class ItemMotion:
     ----------
     weights : list of ItemWeights or None
         Of each item, if there is a rig.
-    mended : list of (str, int)
+    mended : dict of str to int
         At how many vertices of each item, by its name, they were mended for poses.
-    lifted : list of (str, int)
+    lifted : dict of str to int
         How many vertices of each were lifted off the skin for that.
     fitted : list of FittedItem
         The items, lifted.
@@ -97,14 +97,14 @@ class ItemMotion:
         self._items: Sequence[ReadItem] = ()
         self.fitted: list[FittedItem] = []
         self.weights: list[ItemWeights | None] = []
-        self.mended: list[tuple[str, int]] = []
-        self.lifted: list[tuple[str, int]] = []
+        self.mended: dict[str, int] = {}
+        self.lifted: dict[str, int] = {}
         self.new_bones: list[NewBone] = []
         self.handed = False
         self.followed: list[NDArray[np.float64]] = []
 
-    def remarks(self, target: str) -> list[str]:
-        """Say where the weights on a target of such a name come from."""
+    def remarks(self, target: str, made: Mapping[str, str]) -> list[str]:
+        """Say where the weights on a target of such a name come from, of what was made of the items, by their names."""
         said = []
         if any(weights is not None and weights.from_skin and weights.lost for weights in self.weights):
             said.append(
@@ -114,13 +114,13 @@ class ItemMotion:
                 else f'The rig of "{target}" has other bones, so the weights were taken from its skin.'
             )
         said.extend(
-            f'Weights of {counted(count, "vertex")} of "{name}" were mended for poses.'
-            for name, count in self.mended
+            f'Weights of {counted(count, "vertex")} of "{made[name]}" were mended for poses.'
+            for name, count in self.mended.items()
             if count
         )
         said.extend(
-            f'{counted(count, "vertex")} of "{name}" were lifted off the skin for poses.'
-            for name, count in self.lifted
+            f'{counted(count, "vertex")} of "{made[name]}" were lifted off the skin for poses.'
+            for name, count in self.lifted.items()
             if count
         )
         return said
@@ -204,7 +204,7 @@ class ItemMotion:
                 continue
             mixed = replaced(found[number], rig.names, one.weights, one.changed)
             found[number] = within_limit(mixed, rig.names, self._settings)
-            self.mended.append((self._items[number].name, int(one.changed.sum())))
+            self.mended[self._items[number].name] = int(one.changed.sum())
         weighted = [
             replace(item, weights=in_columns(weights, rig.names)) for item, weights in zip(weighted, found, strict=True)
         ]
@@ -215,7 +215,7 @@ class ItemMotion:
             self.fitted[number] = replace(
                 fitted, positions=fitted.positions + move, clearance=fitted.clearance + lengths
             )
-            self.lifted.append((self._items[number].name, int((lengths > 0).sum())))
+            self.lifted[self._items[number].name] = int((lengths > 0).sum())
 
     def _pairing(self, passage: Passage, rig: SourceRig, lost: Sequence[str]) -> BonePairing | None:
         """Pair the bones of both rigs, if items have weights in bones (of names that are lost) that the other lacks."""

@@ -197,6 +197,7 @@ class WearTransfer(Transfer):
             count = counted(len(self._moving.new_bones), "bone")
             remarks.append(f'{count} of the items were added to the rig of "{target.name}".')
         copies: list[bpy.types.Object] = []
+        names: dict[str, str] = {}
         for number, (item, obj, fitted) in enumerate(zip(self._items, items, self._fitted, strict=True)):
             if self._moving is None:
                 made = obj
@@ -214,8 +215,9 @@ class WearTransfer(Transfer):
             if made is not obj:
                 copies.append(made)
                 as_fitted(made, target)
-            remarks.append(done(item.name, fitted, is_body=item.name in self._ends))
-            notes.extend(filter(None, [doubt(item.name, fitted)]))
+            names[item.name] = made.name
+            remarks.append(done(made.name, fitted, is_body=item.name in self._ends))
+            notes.extend(filter(None, [doubt(made.name, fitted)]))
         notes.extend(
             f'Modifiers of "{copy.name}" still use {listed(kept)}, as those of the original do. Put a copy of it where '
             f'"{target.name}" is, and pick that.'
@@ -225,7 +227,7 @@ class WearTransfer(Transfer):
         remarks.extend(
             f'"{name}" counts as part of the body as well: "{source.name}" has no skin below it.' for name in self._ends
         )
-        remarks.extend([] if self._moving is None else self._moving.remarks(target.name))
+        remarks.extend([] if self._moving is None else self._moving.remarks(target.name, names))
         if self._settings.hide != "NONE":
             meshes = zip(self._fitted, (item.worn.mesh for item in self._items), strict=True)
             worn = [(one.positions, mesh.triangles) for one, mesh in meshes]

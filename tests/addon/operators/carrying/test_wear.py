@@ -12,7 +12,7 @@ from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
 from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
 from hiermatch.hiermatch_addon.transfers.wearing.fit_colors import carriers_of_fit
 
-from tests.addon.garments import add_item, depths, fitted, in_world, made_copies, wear
+from tests.addon.garments import add_item, add_twin, depths, fitted, in_world, made_copies, wear
 from tests.addon.rigs import add_armature
 from tests.addon.scenes import DENSE, snapshot, weights_of
 from tests.addon.shape_keys import positions
@@ -36,13 +36,26 @@ def test_items_are_fitted_as_copies_and_again_in_place(dressed_pair):
     np.testing.assert_array_equal(positions(shirt), before)
     report = bpy.context.scene.hiermatch_retarget.report
     assert "2 items" in report.done
-    assert '"Shirt" was fitted' in report.remarks
+    assert '"Shirt on Target" was fitted' in report.remarks
     name = copy.name
     assert wear("Shirt") == {"FINISHED"}
     assert fitted("Shirt").name == name
     assert len(bpy.data.collections["Outfit of Target"].objects) == 2
     assert source.name == "Source"
     assert coat.name == "Coat"
+
+
+def test_of_several_bodies_it_is_said_on_which_an_item_is_to_be_checked(dressed_pair, monkeypatch):
+    _, target, *_ = dressed_pair
+    add_twin(target)
+    monkeypatch.setattr(wear_transfer, "doubt", lambda name, _: f'"{name}" should be checked: it is a test.')
+    named = [{"name": "Target"}, {"name": "Twin"}]
+    assert wear("Shirt", target="", targets=named) == {"FINISHED"}
+    report = bpy.context.scene.hiermatch_retarget.report
+    for name in made_copies():
+        assert f'"{name}" was fitted' in report.remarks
+        assert f'"{name}" should be checked' in report.notes
+    assert len(made_copies()) == 2
 
 
 def test_a_surface_deform_is_bound_to_the_other_body(dressed_pair):
