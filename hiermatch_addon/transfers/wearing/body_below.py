@@ -101,7 +101,10 @@ def cover_body(
             continue
         if how == "KEY":
             into = np.linalg.inv(np.array(part.matrix_world, np.float64))[:3, :3]
-            add_keys(part, [KeySettings(COVERED, value=1.0)], (inwards[own] @ into.T)[None])
+            keys = keys_of(part)
+            before = None if keys is None else keys.key_blocks.get(COVERED)
+            settings = KeySettings(COVERED, value=1.0) if before is None else KeySettings.of(before, ())
+            add_keys(part, [settings], (inwards[own] @ into.T)[None])
             continue
         write_weights(part, [COVERED], csr_array(covered[own, None].astype(float)))
         modifier: Any = part.modifiers.get(COVERED) or part.modifiers.new(COVERED, "MASK")

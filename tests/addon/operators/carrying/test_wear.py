@@ -274,7 +274,11 @@ def test_the_body_below_is_drawn_in_or_hidden(dressed_pair):
     assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
     assert "Below Clothes" not in target.modifiers
     assert "Below Clothes" not in target.vertex_groups
-    assert target.data.shape_keys.key_blocks["Below Clothes"].value == 1
+    key = target.data.shape_keys.key_blocks["Below Clothes"]
+    assert key.value == 1
+    key.value = 0.5
+    assert wear("Shirt", wear_hide="KEY") == {"FINISHED"}
+    assert key.value == 0.5
 
 
 def test_the_group_of_what_was_hidden_below_clothes_stays_if_a_modifier_of_the_user_needs_it(dressed_pair):
