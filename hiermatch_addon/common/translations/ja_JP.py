@@ -1608,6 +1608,9 @@ MESSAGES: Final[dict[str, str]] = {
         '"{0}"のモディファイアーは、元のものと同じく、まだ{1}を使っています。"{2}"のある所にその複製を置き、それを選んで'
         "ください。"
     ),
+    "The collection of {0} is hidden or left out. Show it in the Outliner.": (
+        "{0}のコレクションは非表示か除外されています。アウトライナーで表示してください。"
+    ),
     "Mend in Poses": "ポーズで補正",
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (

@@ -1313,6 +1313,9 @@ MESSAGES: Final[dict[str, str]] = {
     'Modifiers of "{0}" still use {1}, as those of the original do. Put a copy of it where "{2}" is, and pick that.': (
         '"{0}" 的修改器和原物体一样仍使用 {1}。请在 "{2}" 所在处放置其副本，并选用该副本。'
     ),
+    "The collection of {0} is hidden or left out. Show it in the Outliner.": (
+        "{0} 所在的集合已隐藏或排除。请在大纲视图中显示它。"
+    ),
     "Mend in Poses": "在姿势中修正",
     "Bend each joint of the other body's rig, and where its skin pokes through an item then, bring the weights "
     "there closer to those of the skin, and lift the item a little": (

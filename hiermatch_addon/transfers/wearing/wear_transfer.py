@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ....engine import TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
+from ...common.access import view_layer_of
 from ...common.errors import NothingToCarryError, ObjectError
 from ...common.phrases import counted, listed
 from ...jobs.transfer import Transfer, TransferReport
@@ -224,6 +225,11 @@ class WearTransfer(Transfer):
             for copy in copies
             if (kept := left_behind(copy, target))
         )
+        layer = view_layer_of(context)
+        layer.update()  # or it would not know of what was made just now
+        unseen = [copy.name for copy in copies if not copy.visible_get(view_layer=layer)]
+        if unseen:
+            notes.append(f"The collection of {listed(unseen)} is hidden or left out. Show it in the Outliner.")
         remarks.extend(
             f'"{name}" counts as part of the body as well: "{source.name}" has no skin below it.' for name in self._ends
         )

@@ -30,6 +30,18 @@ def test_what_another_body_wears_is_left_alone(dressed_pair):
     assert made_copies() == ["Shirt on Target", "Shirt on Twin"]
 
 
+@pytest.mark.usefixtures("dressed_pair")
+def test_where_copies_are_not_seen_it_is_said():
+    assert wear("Shirt") == {"FINISHED"}
+    report = bpy.context.scene.hiermatch_retarget.report
+    assert "is hidden or left out" not in report.notes
+    collection = bpy.context.view_layer.layer_collection.children["Outfit of Target"]
+    for hidden, excluded in ((True, False), (False, True)):
+        collection.hide_viewport, collection.exclude = hidden, excluded
+        assert wear("Shirt") == {"FINISHED"}
+        assert 'The collection of "Shirt on Target" is hidden or left out.' in report.notes
+
+
 def test_a_copy_with_a_long_name_is_kept_aside_under_another_one(dressed_pair):
     _, _, shirt, _ = dressed_pair
     shirt.name = 300 * "S"
