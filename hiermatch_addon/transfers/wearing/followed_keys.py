@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from ....engine import TriangleMesh
     from ...scene.character import Side
 
-__all__ = ["BodyKeys", "apart_from", "read_body_keys", "write_followed"]
+__all__ = ["BodyKeys", "apart_from", "lacking", "read_body_keys", "write_followed"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,12 @@ class BodyKeys:
     def names(self) -> tuple[str, ...]:
         """What the keys are called."""
         return tuple(one.name for one in self.settings)
+
+    def only(self, chosen: NDArray[np.bool_]) -> BodyKeys:
+        """Leave others than the chosen ones, (k,), out."""
+        return BodyKeys(
+            tuple(one for one, kept in zip(self.settings, chosen, strict=True) if kept), self.offsets[chosen]
+        )
 
     def shown_on(self, vertices: NDArray[np.float64]) -> NDArray[np.float64]:
         """Move the vertices of the body, (n, 3), by as much as the keys are on."""
@@ -86,28 +92,21 @@ def read_body_keys(context: bpy.types.Context, body: Side, *, shown: bool = Fals
     return BodyKeys(tuple(settings), np.array(offsets).reshape(shape), (note,) if note else ())
 
 
-def apart_from(keys: BodyKeys, body: TriangleMesh, item: bpy.types.Object, places: NDArray[np.float64]) -> BodyKeys:
-    """Return those of a body's keys that move it below an item that does not follow them.
+def lacking(keys: BodyKeys, *items: bpy.types.Object) -> BodyKeys:
+    """Return those of a body's keys that none of some items follows.
 
-    It follows those of which it has its own, and all if it is bound to the surface of a body.
-
-    Parameters
-    ----------
-    keys : BodyKeys
-        The keys.
-    body : TriangleMesh
-        The body without them.
-    item : bpy.types.Object
-        The item.
-    places : (n, 3) array of float
-        Its vertices.
+    An item follows those of which it has its own, and all if it is bound to the surface of a body.
     """
-    bound = any(modifier.type == "SURFACE_DEFORM" for modifier in item.modifiers)
+    bound = any(modifier.type == "SURFACE_DEFORM" for item in items for modifier in item.modifiers)
+    own = {name for item in items for name in shape_key_names(item)}
+    return keys.only(np.array([not bound and name not in own for name in keys.names], bool))
+
+
+def apart_from(keys: BodyKeys, body: TriangleMesh, item: bpy.types.Object, places: NDArray[np.float64]) -> BodyKeys:
+    """Return those of a body's keys that move it below an item with vertices at such places, which lacks them."""
     below = np.unique(body.triangles[ClosestPoints(body).nearest(places).triangles])
-    own = shape_key_names(item)
-    moving = keys.offsets[:, below].any(axis=(1, 2))
-    kept = [number for number in np.flatnonzero(moving) if not bound and keys.settings[number].name not in own]
-    return BodyKeys(tuple(keys.settings[number] for number in kept), keys.offsets[kept])
+    found = lacking(keys, item)
+    return found.only(found.offsets[:, below].any(axis=(1, 2)))
 
 
 def write_followed(copy: bpy.types.Object, body: Side, keys: BodyKeys, offsets: NDArray[np.float64]) -> list[str]:

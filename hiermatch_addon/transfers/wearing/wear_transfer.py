@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ....engine import TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
+from ....engine import ClosestPoints, TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
 from ...common.access import view_layer_of
 from ...common.errors import NothingToCarryError, ObjectError
 from ...common.phrases import counted, listed
@@ -29,7 +30,7 @@ from ..weights import WeightTransfer
 from .body_below import cover_body, worn_already
 from .fit_colors import write_colors
 from .fit_report import done, doubt
-from .followed_keys import apart_from, read_body_keys, write_followed
+from .followed_keys import apart_from, lacking, read_body_keys, write_followed
 from .item_bones import ItemBones, read_item_bones
 from .item_motion import ItemMotion
 from .item_reading import check_place, read_item, still_there
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from ...jobs.transfer import Passage
     from ...scene.armatures import SourceRig
     from ...scene.character import Side
+    from ...storage.vertex_maps import MapPair
     from ..options.wear import WearSettings
     from .followed_keys import BodyKeys
     from .item_reading import ReadItem
@@ -73,6 +75,7 @@ class WearTransfer(Transfer):
         self._rig: SourceRig | None = None
         self._moving: ItemMotion | None = None
         self._keys: BodyKeys | None = None
+        self._shown: BodyKeys | None = None
         self._fitted: list[FittedItem] = []
         self._motion: NDArray[np.float64] = np.eye(4)
         self._notes: list[str] = []
@@ -99,6 +102,8 @@ class WearTransfer(Transfer):
         if settings.keys and settings.result == "OBJECT":
             self._keys = read_body_keys(context, target)
             self._notes.extend(self._keys.notes)
+        else:
+            self._shown = lacking(read_body_keys(context, target, shown=True), *chosen)
         shown = read_body_keys(context, source, shown=True)
         for obj in chosen:
             read = read_item(depsgraph, obj, source, self._rig, settings.clearance)
@@ -163,6 +168,9 @@ class WearTransfer(Transfer):
             maps = there, pair.target_to_source
             wrapped = yield from within(wrap_steps(pair.source, pair.target, *maps), start, start + 0.3)
             registered, start = wrapped.positions, start + 0.3
+        if self._shown is not None and self._shown.settings:
+            pair, registered = _as_shown(pair, registered, self._shown)
+            passage = replace(passage, pair=pair)
         self._motion = _overall_motion(pair.source, registered)
         self._fitted = [cast("Any", None)] * len(self._items)
         bones = None if self._rig is None else self._rig.weights
@@ -250,6 +258,16 @@ def _posed(context: bpy.types.Context, body: Side) -> NDArray[np.float64]:
     except ObjectError:
         with without_other_vertices(context, parts_of(body)):
             return read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=True).vertices
+
+
+def _as_shown(pair: MapPair, images: NDArray[np.float64], keys: BodyKeys) -> tuple[MapPair, NDArray[np.float64]]:
+    """Let a target be as shape keys show it, and with it what was laid onto it, (n, 3)."""
+    target = pair.target
+    vertices = keys.shown_on(target.vertices)
+    found = ClosestPoints(target).nearest(images)
+    moved = (vertices - target.vertices)[target.triangles[found.triangles]]
+    shown = TriangleMesh(vertices, target.triangles)
+    return replace(pair, target=shown), images + np.einsum("kc,kci->ki", found.barycentric, moved)
 
 
 def _overall_motion(source: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.float64]:

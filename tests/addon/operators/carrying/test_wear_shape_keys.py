@@ -194,3 +194,18 @@ def test_an_item_lies_on_a_body_as_its_keys_show_it_unless_it_follows_them(dress
     bpy.context.view_layer.update()
     assert wear("Shirt") == {"FINISHED"}
     np.testing.assert_allclose(in_world(fitted("Shirt")), expected, atol=0.05)
+
+
+def test_what_does_not_follow_the_keys_of_the_body_is_fitted_to_what_they_show(dressed_pair):
+    """A body that is made by keys, such as a belly that is on, pokes through nothing that is worn by it."""
+    _, target, shirt, coat = dressed_pair
+    add_belly(target)
+    key = target.data.shape_keys.key_blocks["Belly"]
+    key.slider_max = key.value = 2
+    assert wear("Shirt") == {"FINISHED"}
+    expected = evaluated(fitted("Shirt"))
+    assert wear("Shirt", wear_keys=False) == {"FINISHED"}
+    np.testing.assert_allclose(in_world(fitted("Shirt")), expected, atol=0.1)
+    assert wear("Shirt", "Coat", wear_result="KEY") == {"FINISHED"}
+    np.testing.assert_allclose(evaluated(shirt), expected, atol=0.1)
+    assert coat.data.shape_keys.key_blocks.keys() == ["Basis", "Fit to Target"]
