@@ -18,6 +18,7 @@ from ..character import FITTED_TO, armatures_above, parts_of, positions_of, topo
 from ..deform_layer import read_weights
 from ..plain_settings import written_settings
 from ..shape_key_io import key_positions, keys_of
+from .modifier_pointers import node_inputs, used_beside
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -144,14 +145,14 @@ def unmark(copy: bpy.types.Object) -> None:
 def as_fitted(copy: bpy.types.Object, body: Side) -> None:
     """Say that a copy is now as it was fitted to a body."""
     mine: Any = copy
-    mine[_AS_FITTED], mine[_PLACE] = _state(copy), " ".join(map(str, _place(copy, body).ravel()))
+    mine[_AS_FITTED], mine[_PLACE] = _state(copy, body), " ".join(map(str, _place(copy, body).ravel()))
 
 
 def was_edited(copy: bpy.types.Object, body: Side) -> bool:
     """Tell whether a copy was edited since it was fitted to a body, or moved on it, as far as that is known."""
     mine: Any = copy
     known, place = mine.get(_AS_FITTED, ""), np.array(mine.get(_PLACE, "").split(), np.float64)
-    if known and known != _state(copy):
+    if known and known != _state(copy, body):
         return True
     return bool(len(place)) and not np.allclose(_place(copy, body).ravel(), place, rtol=1e-4, atol=1e-5)
 
@@ -197,11 +198,17 @@ def _settings(copy: bpy.types.Object, modifier: bpy.types.Modifier) -> str:
     """Write what is set on a modifier, but for what drivers set."""
     animation, start = copy.animation_data, f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"].'
     driven = {curve.data_path for curve in animation.drivers} if animation else set()
-    return written_settings(modifier, {path.removeprefix(start) for path in driven if path.startswith(start)})
+    given = {
+        name: getattr(value, "name", list(value) if hasattr(value, "__len__") else value)
+        for name, (_, value) in node_inputs(modifier).items()
+        if not isinstance(value, bpy.types.Object) and not any(name in path for path in driven)
+    }
+    without = {path.removeprefix(start) for path in driven if path.startswith(start)}
+    return f"{written_settings(modifier, without)}{given or ''}"
 
 
-def _state(copy: bpy.types.Object) -> str:
-    """Describe the form of a copy, its weights, modifiers and materials."""
+def _state(copy: bpy.types.Object, body: Side) -> str:
+    """Describe the form of a copy on a body, its weights, modifiers and materials."""
     digest = hashlib.blake2b(digest_size=16)
     for text in (topology_of(copy), positions_of(copy), *(group.name for group in copy.vertex_groups)):
         digest.update(f"{text}\0".encode())
@@ -213,6 +220,8 @@ def _state(copy: bpy.types.Object) -> str:
         digest.update(weights.data.astype(np.float32).tobytes() + weights.indices.astype(np.int64).tobytes())
     for modifier in copy.modifiers:
         digest.update(f"{modifier.type} {modifier.name} {_settings(copy, modifier)}\0".encode())
+    used = {one.name for _, one in used_beside(copy, body) if BODY not in cast("Any", one)}
+    digest.update("\0".join(sorted(used)).encode())
     for slot in copy.material_slots:
         digest.update(f"{slot.material.name if slot.material else ''}\0".encode())
     return digest.hexdigest()

@@ -35,7 +35,7 @@ from .fitted_copies import (
     was_edited,
 )
 from .garment_shape_io import mirror_axes
-from .modifier_pointers import point_to
+from .modifier_pointers import point_to, used_beside
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Container, Sequence
@@ -49,6 +49,7 @@ __all__ = [
     "check_item",
     "dressed_at_rest",
     "fitted_copy",
+    "left_behind",
     "meshes_of",
     "selected_items",
     "undressed",
@@ -274,6 +275,18 @@ def fitted_copy(
             every[own] = [cast("bpy.types.Key", keys)] if part is item else theirs
     driven: list[bpy.types.Key | bpy.types.Object] = [copy] if keys is None else [copy, keys]
     return copy, sorted({name for one in driven for name in point_drivers(one, every)}), aside
+
+
+def left_behind(copy: bpy.types.Object, body: Side) -> list[str]:
+    """Let modifiers of a copy use the copies of other items; return the names of what else they use beside the body."""
+    kept = []
+    for put, used in used_beside(copy, body):
+        other = used if BODY in cast("Any", used) else made_copy(used, body)
+        if other is None:
+            kept.append(used.name)
+        else:
+            put(other)
+    return list(dict.fromkeys(kept))
 
 
 def _copy_of(item: bpy.types.Object) -> bpy.types.Object:

@@ -10,7 +10,6 @@ import bpy
 
 from ..armatures import moving_armatures
 from ..character import parts_of
-from .fitted_copies import made_copy
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
     from ..character import Side
 
-__all__ = ["left_behind", "point_to"]
+__all__ = ["node_inputs", "point_to", "used_beside"]
 
 _SIZES = {"SOLIDIFY": ("thickness",), "BEVEL": ("width",), "DISPLACE": ("strength",)}
 """For each type of modifier the members that are lengths."""
@@ -45,23 +44,29 @@ def point_to(
             changed.matrix_inverse = _hook_place(modifier).inverted_safe() @ copy.matrix_world @ moved
 
 
-def left_behind(copy: bpy.types.Object, body: Side) -> list[str]:
-    """Let modifiers of a copy point to copies of other items; return the names of what else is not the body's.
+def used_beside(copy: bpy.types.Object, body: Side) -> list[tuple[Callable[[Any], None], bpy.types.Object]]:
+    """Return what modifiers of a copy use that is not the body's, each with what lets them use something else.
 
     Hooks do not count: they do the same wherever they stand.
     """
     own = {copy, *parts_of(body), *(rig for part in parts_of(body) for rig in moving_armatures(part))}
-    kept = []
-    for modifier in copy.modifiers:
-        for put, value in _pointed_to(modifier) if modifier.type != "HOOK" else ():
-            if not isinstance(value, bpy.types.Object) or value in own:
-                continue
-            other = made_copy(value, body)
-            if other is not None:
-                put(other)
-            else:
-                kept.append(value.name)
-    return list(dict.fromkeys(kept))
+    found = [one for modifier in copy.modifiers if modifier.type != "HOOK" for one in _pointed_to(modifier)]
+    return [(put, value) for put, value in found if isinstance(value, bpy.types.Object) and value not in own]
+
+
+def node_inputs(modifier: bpy.types.Modifier) -> dict[str, tuple[Callable[[Any], None], Any]]:
+    """Return what geometry nodes are given, by the identifiers of their inputs, each with what changes it."""
+    holder: Any = modifier
+    if modifier.type != "NODES" or holder.node_group is None:
+        return {}
+    items = [one for one in holder.node_group.interface.items_tree if one.item_type == "SOCKET"]
+    names = [one.identifier for one in items if one.in_out == "INPUT"]
+    if hasattr(holder, "properties"):  # from Blender 5.2 on
+        sockets: dict[str, Any] = {name: getattr(holder.properties.inputs, name, None) for name in names}
+        return {
+            name: (partial(setattr, one, "value"), one.value) for name, one in sockets.items() if hasattr(one, "value")
+        }
+    return {name: (partial(holder.__setitem__, name), holder[name]) for name in names if name in holder}
 
 
 def _hook_place(modifier: bpy.types.Modifier) -> Matrix:
@@ -76,12 +81,6 @@ def _pointed_to(modifier: bpy.types.Modifier) -> list[tuple[Callable[[Any], None
     """Return what a modifier points to, each with what lets it point to something else."""
     holder: Any = modifier
     names = [prop.identifier for prop in holder.bl_rna.properties if prop.type == "POINTER" and not prop.is_readonly]
-    found = [(partial(setattr, holder, name), getattr(holder, name)) for name in names]
-    if modifier.type == "NODES":
-        if hasattr(holder, "properties"):  # from Blender 5.2 on
-            inputs = holder.properties.inputs
-            sockets = [getattr(inputs, prop.identifier) for prop in inputs.bl_rna.properties if prop.type == "POINTER"]
-            found += [(partial(setattr, one, "value"), getattr(one, "value", None)) for one in sockets]
-        else:
-            found += [(partial(holder.__setitem__, name), value) for name, value in holder.items()]
+    found: list[tuple[Callable[[Any], None], Any]] = [*node_inputs(modifier).values()]
+    found += [(partial(setattr, holder, name), getattr(holder, name)) for name in names]
     return [(put, value) for put, value in found if isinstance(value, bpy.types.ID)]

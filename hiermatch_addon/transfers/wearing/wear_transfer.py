@@ -21,8 +21,7 @@ from ...scene.pair import named_object
 from ...scene.posing.before_after import show_after
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
-from ...scene.worn.garments import bound_items, check_item
-from ...scene.worn.modifier_pointers import left_behind
+from ...scene.worn.garments import bound_items, check_item, left_behind
 from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
@@ -37,6 +36,8 @@ from .item_reading import check_place, read_item, still_there
 from .item_writing import check_key, write_copy, write_key
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import bpy
     from numpy.typing import NDArray
 
@@ -223,21 +224,10 @@ class WearTransfer(Transfer):
                 write_colors(made, fitted)
             if made is not obj:
                 copies.append(made)
-                as_fitted(made, target)
             names[item.name] = made.name
             remarks.append(done(made.name, fitted, is_body=item.name in self._ends))
             notes.extend(filter(None, [doubt(made.name, fitted)]))
-        notes.extend(
-            f'Modifiers of "{copy.name}" still use {listed(kept)}, as those of the original do. Put a copy of it where '
-            f'"{target.name}" is, and pick that.'
-            for copy in copies
-            if (kept := left_behind(copy, target))
-        )
-        layer = view_layer_of(context)
-        layer.update()  # or it would not know of what was made just now
-        unseen = [copy.name for copy in copies if not copy.visible_get(view_layer=layer)]
-        if unseen:
-            notes.append(f"The collection of {listed(unseen)} is hidden or left out. Show it in the Outliner.")
+        notes.extend(_settled(context, copies, target))
         remarks.extend(
             f'"{name}" counts as part of the body as well: "{source.name}" has no skin below it.' for name in self._ends
         )
@@ -248,6 +238,25 @@ class WearTransfer(Transfer):
             cover_body(context, target, [*worn, *worn_already(context, target, copies)], self._settings.hide)
         written = [report.done for report in reports if report.done]
         return TransferReport(", ".join([*written, counted(len(items), "item")]), tuple(notes), tuple(remarks))
+
+
+def _settled(context: bpy.types.Context, copies: Sequence[bpy.types.Object], target: Side) -> list[str]:
+    """Let copies that were all made know each other, and say what is to be known of them now."""
+    notes = []
+    for copy in copies:
+        kept = left_behind(copy, target)
+        if kept:
+            notes.append(
+                f'Modifiers of "{copy.name}" still use {listed(kept)}, as those of the original do. Put a copy of it '
+                f'where "{target.name}" is, and pick that.'
+            )
+        as_fitted(copy, target)
+    layer = view_layer_of(context)
+    layer.update()  # or it would not know of what was made just now
+    unseen = [copy.name for copy in copies if not copy.visible_get(view_layer=layer)]
+    if unseen:
+        notes.append(f"The collection of {listed(unseen)} is hidden or left out. Show it in the Outliner.")
+    return notes
 
 
 def _posed(context: bpy.types.Context, body: Side) -> NDArray[np.float64]:

@@ -79,10 +79,28 @@ def nudge(copy):
     copy.location.z += 0.2
 
 
-@pytest.mark.parametrize("change", [thicken, nudge])
+def tune(copy):
+    modifier = copy.modifiers["Nodes"]
+    (name,) = (name for name in modifier.keys() if isinstance(modifier[name], float))  # noqa: SIM118 - is no dict
+    modifier[name] = 0.75
+
+
+def aim(copy):
+    copy.modifiers["Half"].mirror_object = bpy.data.objects["Plane Here"]
+
+
+@pytest.mark.parametrize("change", [thicken, nudge, tune, aim])
 def test_a_copy_whose_modifier_was_set_or_that_was_moved_is_kept_aside(dressed_pair, change):
     _, target, shirt, _ = dressed_pair
     shirt.modifiers.new("Thick", "SOLIDIFY").thickness = 0.01
+    half = shirt.modifiers.new("Half", "MIRROR")
+    half.mirror_object, _ = (bpy.data.objects.new(name, None) for name in ("Plane", "Plane Here"))
+    half.show_viewport = False
+    nodes = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
+    for name in ("Geometry", "Float"):
+        nodes.interface.new_socket(name, in_out="INPUT", socket_type=f"NodeSocket{name}")
+    shirt.modifiers.new("Nodes", "NODES").node_group = nodes
+    shirt.modifiers["Nodes"].show_viewport = False
     assert wear("Shirt") == {"FINISHED"}
     bpy.context.view_layer.update()
     target.location.y += 2  # with all that it wears
