@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from ....engine import FittedItem
 
-__all__ = ["FIT_ITEMS", "FIT_NAMES", "carriers_of_fit", "write_colors"]
+__all__ = ["FIT_ITEMS", "FIT_NAMES", "carriers_of_fit", "drop_colors", "write_colors"]
 
 FIT_ITEMS: Final = (
     ("DISTANCE", "Distance to Skin", "Show how far clothes are from the skin, from white to dark red; blue is inside"),
@@ -31,7 +31,19 @@ FIT_NAMES: Final = {identifier: name for identifier, name, _ in FIT_ITEMS}
 def carriers_of_fit(view_layer: bpy.types.ViewLayer) -> list[bpy.types.Object]:
     """Return the meshes in a view layer that carry these colors."""
     meshes = [obj for obj in view_layer.objects if obj is not None and obj.type == "MESH"]
-    return [obj for obj in meshes if all(name in mesh_of(obj).color_attributes for name in FIT_NAMES.values())]
+    return [obj for obj in meshes if _carries(mesh_of(obj))]
+
+
+def drop_colors(obj: bpy.types.Object) -> None:
+    """Take these colors from a copy, which show how its original fitted."""
+    mesh = mesh_of(obj)
+    for name in FIT_NAMES.values() if _carries(mesh) else ():
+        mesh.attributes.remove(mesh.attributes[name])
+
+
+def _carries(mesh: bpy.types.Mesh) -> bool:
+    """Tell whether a mesh carries all of these colors."""
+    return all(name in mesh.color_attributes for name in FIT_NAMES.values())
 
 
 def write_colors(obj: bpy.types.Object, fitted: FittedItem) -> None:

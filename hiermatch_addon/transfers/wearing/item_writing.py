@@ -32,6 +32,7 @@ from ...scene.worn.fitted_copies import former_names, mark_names
 from ...scene.worn.garment_shape_io import write_shape
 from ...scene.worn.garments import fitted_copy
 from ...storage.writing import clear, prefixes
+from .fit_colors import drop_colors
 from .item_reading import painted_groups
 
 if TYPE_CHECKING:
@@ -116,6 +117,7 @@ def write_copy(
     copy, kept, aside = fitted_copy(context, item, source, target, motion=motion, growth=growth)
     notes = _notes_on(copy, item, target, kept, aside)
     _drop_fit_keys(copy)
+    drop_colors(copy)
     write_shape(copy, item, fitted.positions, fitted.rotations * fitted.scales[:, None, None])
     armature = find_armature(target)
     if armature is None:

@@ -281,6 +281,15 @@ def test_the_body_below_is_drawn_in_or_hidden(dressed_pair):
     assert key.value == 0.5
 
 
+def test_colors_of_an_original_say_nothing_of_its_copy(dressed_pair):
+    _, _, shirt, _ = dressed_pair
+    assert wear("Shirt", wear_result="KEY", wear_colors=True) == {"FINISHED"}
+    shirt.data.color_attributes.new("Dye", "FLOAT_COLOR", "POINT")
+    assert wear("Shirt") == {"FINISHED"}
+    assert carriers_of_fit(bpy.context.view_layer) == [shirt]
+    assert fitted("Shirt").data.color_attributes.keys() == ["Dye"]
+
+
 def test_the_group_of_what_was_hidden_below_clothes_stays_if_a_modifier_of_the_user_needs_it(dressed_pair):
     _, target, *_ = dressed_pair
     assert wear("Shirt", wear_hide="MASK") == {"FINISHED"}
