@@ -27,6 +27,9 @@ if TYPE_CHECKING:
 __all__ = ["HIERMATCH_PT_wear"]
 
 
+_OF_COPIES = frozenset(f"wear_{name}" for name in ("weights", "limit", "normalise", "poses", "keys", "fit_rig"))
+"""Options that say nothing of a shape key on the original."""
+
 _SHOWN = 6
 """Names of items in the panel, at most."""
 
@@ -59,7 +62,8 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
         options: Any = retarget_of(context)
         names: Iterable[str] = tuple(WearOptions.__annotations__)
         for name in names:
-            layout.prop(options, name)
+            if options.wear_result == "OBJECT" or name not in _OF_COPIES:
+                layout.prop(options, name)
         if draw_progress(layout, context, self.bl_idname):
             return
         row = layout.row()

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from hiermatch.hiermatch_addon.panels import wear_panel
+from hiermatch.hiermatch_addon.transfers.options.wear import WearOptions
 from hiermatch.hiermatch_addon.transfers.wearing.fit_colors import FIT_NAMES
 
 from tests.addon.garments import add_item
@@ -25,11 +26,22 @@ def bodies(dense_pair):
     return dense_pair
 
 
-def drawn_texts(context):
+def drawn_texts(context, kind="label"):
     drawn = []
     panel = SimpleNamespace(layout=Layout(drawn), bl_idname="HIERMATCH_PT_wear")
     wear_panel.HIERMATCH_PT_wear.draw(panel, context)
-    return [entry[1] for entry in drawn if entry[0] == "label"]
+    return [entry[1] for entry in drawn if entry[0] == kind]
+
+
+@pytest.mark.usefixtures("bodies")
+def test_options_of_copies_are_not_shown_for_a_shape_key(context):
+    options = bpy.context.scene.hiermatch_retarget
+    everything = drawn_texts(context, "prop")
+    options.wear_result = "KEY"
+    shown = drawn_texts(context, "prop")
+    options.wear_result = "OBJECT"
+    assert shown == ["wear_result", "wear_clearance", "wear_hide", "wear_colors"]
+    assert everything == list(WearOptions.__annotations__)
 
 
 @pytest.mark.usefixtures("bodies")
