@@ -120,10 +120,8 @@ def save_results(
     A `clean` target carries what was transferred into files other than a .blend, but no colors, groups and attributes
     of the match, which an engine or a renderer would take for its own.
     """
-    if is_own(pair[0]):
-        match = collect_match(*pair, prefix) if is_own(pair[1]) else None  # which is kept nowhere then
-    else:
-        match = kept_linked(*pair, prefix)
+    both_own = is_own(pair[0]) and is_own(pair[1])
+    match = collect_match(*pair, prefix) if both_own else kept_linked(*pair, prefix)
     if match is not None:
         report.add_match(match.stored)
     elif parsed.map is not None:

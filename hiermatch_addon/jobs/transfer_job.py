@@ -119,13 +119,14 @@ class _Leg:
         self.refined = False
         self.prefix = options.prefix
         self.quality: Quality | None = None
-        self.kept: StoredMatch | None = None  # if the target keeps it alone
+        self.kept: StoredMatch | None = None  # if one of both keeps it alone
         self.verdict: Verdict | None = None
+        both_own = is_own(source) and is_own(target)
         if carry_fresh_match(source, target, options.prefix):
             found = find_maps(source, target, options.prefix)
             self.stored, self.refined, self.prefix = found.maps, found.refined, found.source.prefix
             self.quality = found.quality
-        elif not is_own(source) and (kept := kept_linked(source, target, options.prefix)) is not None:
+        elif not both_own and (kept := kept_linked(source, target, options.prefix)) is not None:
             self.stored, self.refined, self.quality = kept.maps, kept.stored.answer.refined, kept.stored.answer.quality
             self.kept = kept.stored
         self.match: MatchJob | None = None
@@ -207,8 +208,7 @@ class TransferJob(SteppedJob):
     options : TransferOptions
         How the way is found.
     writes : bool
-        Whether the meshes of the targets are written to.  If not, they may be another file's, with which no match is
-        kept.
+        Whether the meshes of the targets are written to.  If not, they may be another file's.
 
     Attributes
     ----------
@@ -293,12 +293,10 @@ class TransferJob(SteppedJob):
         """Write the match if it is new, and the better maps.
 
         A source carries one match of a prefix only: with several targets, the new matches are used but not kept.  Those
-        of a source that is another file's are kept on the target alone, those with such a target nowhere.
+        of a body that is another file's are kept on the other one alone.
         """
         outcome = None
-        if not is_own(target):
-            return None
-        if not is_own(source):
+        if not (is_own(source) and is_own(target)):
             self._keep_linked(leg, source, target)
             return None
         if leg.match is not None:
@@ -310,7 +308,7 @@ class TransferJob(SteppedJob):
         return outcome
 
     def _keep_linked(self, leg: _Leg, source: Side, target: Side) -> None:
-        """Keep a match with a source of another file on the target, if it is new or has become better."""
+        """Keep a match with a body of another file on the other one, if it is new or has become better."""
         stored = leg.kept if leg.match is None else leg.match.stored()
         if stored is None or (leg.match is None and leg.better is None):
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Matches with sources of other files, which cannot be written to: the target keeps all of them."""
+"""Matches with bodies of other files, which cannot be written to: the other body keeps all of them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..common.access import group_of, mesh_of
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, positions_of, topology_of, vertex_count
+from ..scene.pair import is_own
 from .match_file import MatchFile, packed_match, unpacked_match
 
 if TYPE_CHECKING:
@@ -21,18 +22,19 @@ if TYPE_CHECKING:
 __all__ = ["forget_linked", "has_linked", "keep_linked", "kept_linked", "linked_prefixes", "move_linked"]
 
 _PROPERTY = "hiermatch_linked"
-"""Custom property of the mesh of a target's first part: for each prefix a match, as an NPZ file would hold it."""
+"""Custom property of the mesh of a body's first part: for each prefix a match, as an NPZ file would hold it."""
 
 
 def keep_linked(source: Side, target: Side, stored: StoredMatch, maps: StoredMaps, prefix: str) -> None:
-    """Keep a match on its target alone, in the place of one with the same prefix."""
+    """Keep a match on its target alone, or else on its source, in the place of one with the same prefix."""
     packed = packed_match(MatchFile(stored, (vertex_count(source), vertex_count(target)), maps))
-    mesh: Any = mesh_of(parts_of(target)[0])
-    mesh[_PROPERTY] = _packed(parts_of(target)[0]) | {prefix: packed}
+    for keeper in [side for side in (target, source) if is_own(side)][:1]:
+        mesh: Any = mesh_of(parts_of(keeper)[0])
+        mesh[_PROPERTY] = _packed(parts_of(keeper)[0]) | {prefix: packed}
 
 
 def kept_linked(source: Side, target: Side, prefix: str = "") -> MatchFile | None:
-    """Return the match of two sides that the target keeps alone, if neither was edited since; None if there is none.
+    """Return the match of two sides that one of them keeps alone, if neither was edited since; None if there is none.
 
     Parameters
     ----------
@@ -43,7 +45,8 @@ def kept_linked(source: Side, target: Side, prefix: str = "") -> MatchFile | Non
     """
     topologies = topology_of(source), topology_of(target)
     positions = positions_of(source), positions_of(target)
-    for name, packed in _packed(parts_of(target)[0]).items():
+    kept = (one for side in (target, source) for one in _packed(parts_of(side)[0]).items())
+    for name, packed in kept:
         if prefix not in ("", name):
             continue
         try:

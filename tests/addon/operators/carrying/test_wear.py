@@ -7,8 +7,9 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.jobs import transfer_job
+from hiermatch.hiermatch_addon.jobs import match_job, transfer_job
 from hiermatch.hiermatch_addon.scene.character import parts_of, side_of
+from hiermatch.hiermatch_addon.storage.linked_matches import linked_prefixes
 from hiermatch.hiermatch_addon.transfers.wearing import wear_transfer
 from hiermatch.hiermatch_addon.transfers.wearing.fit_colors import carriers_of_fit
 
@@ -173,8 +174,10 @@ def test_items_of_a_library_are_copied_into_the_file(dressed_pair, tmp_path, ove
     np.testing.assert_array_equal(in_world(item), stood)
 
 
-def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dressed_pair, tmp_path):
+def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dressed_pair, tmp_path, monkeypatch):
     source, target, *_ = dressed_pair
+    for body in (source, target):
+        assert bpy.ops.hiermatch.clear(object=body.name) == {"FINISHED"}
     library = str(tmp_path / "bodies.blend")
     bpy.data.libraries.write(library, {target}, fake_user=True)
     bpy.data.objects.remove(target)
@@ -184,9 +187,14 @@ def test_a_body_of_a_library_is_dressed_as_long_as_nothing_is_written_on_it(dres
     bpy.context.view_layer.update()
     with pytest.raises(RuntimeError, match="is linked from"):
         wear("Shirt", wear_hide="KEY")
+    count = []
+    real = match_job.match_steps
+    monkeypatch.setattr(match_job, "match_steps", lambda *bodies, **names: count.append(1) or real(*bodies, **names))
     for _ in range(2):
         assert wear("Shirt") == {"FINISHED"}
         assert made_copies() == ["Shirt on Target"]
+    assert count == [1]  # the source keeps it
+    assert linked_prefixes(source) == ("HM",)
     assert source.library is None
     source.vertex_groups.new(name="neck").add(range(len(source.data.vertices)), 1.0, "REPLACE")
     source.modifiers.new("Armature", "ARMATURE").object = add_armature("Rig")
