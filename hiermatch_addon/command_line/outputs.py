@@ -12,7 +12,7 @@ import bpy
 
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..common.file_writing import beside, check_place
+from ..common.file_writing import beside, check_place, check_whole
 from ..common.phrases import listed
 from ..scene.character import parts_of
 from ..scene.motion.nla_strips import add_tracks
@@ -87,6 +87,7 @@ def save(
         if path.suffix.lower() == ".blend":
             with beside(path) as temporary:
                 bpy.ops.wm.save_as_mainfile(filepath=str(temporary), copy=True, check_existing=False)
+                check_whole(temporary)
         else:
             _select(side, along)
             if clips:
@@ -143,6 +144,8 @@ def _export(path: Path, *, moving: bool) -> None:
             written = sorted(filter(Path.is_file, Path(folder).rglob("*")), key=lambda one: one.name == path.name)
             if not Path(folder, path.name).is_file():
                 raise ObjectError(f'"{path}" cannot be written: Blender\'s exporter wrote nothing.')
+            for one in written:
+                check_whole(one)
             for one in written:  # the file itself last: when it is there, all is there
                 place = path.parent / one.relative_to(folder)
                 place.parent.mkdir(exist_ok=True)

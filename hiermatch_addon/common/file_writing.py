@@ -8,7 +8,7 @@ import os
 from contextlib import contextmanager
 from os.path import realpath
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 from uuid import uuid4
 
 from .errors import ObjectError
@@ -16,7 +16,11 @@ from .errors import ObjectError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["beside", "check_place", "write_whole"]
+__all__ = ["beside", "check_place", "check_whole", "write_whole"]
+
+_BEHIND: Final = 1 << 20
+"""Bytes that must fit behind what Blender wrote: more than the largest block of a file system, so that a disk that had
+no room for the end of a file has none for these."""
 
 
 def check_place(path: Path) -> None:
@@ -39,6 +43,20 @@ def check_place(path: Path) -> None:
     else:
         return
     raise ObjectError(f'"{path}" cannot be written: {os.strerror(reason)}. Choose another place.')
+
+
+def check_whole(path: Path) -> None:
+    """Make sure that a file that Blender has just written is whole: of a full disk most of its writers say nothing.
+
+    Raises
+    ------
+    OSError
+        If nothing can be written behind it, either.
+    """
+    size = path.stat().st_size
+    with path.open("ab") as file:  # on a network it is the closing that fails
+        file.write(os.urandom(_BEHIND))  # zeros would take no room where disks are compressed
+    os.truncate(path, size)
 
 
 def _exists(path: Path) -> bool:

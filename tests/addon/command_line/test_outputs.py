@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import resource
+
 import bpy
 import numpy as np
 import pytest
@@ -67,6 +69,25 @@ def test_what_cannot_be_written_because_its_collection_is_hidden_is_told(tmp_pat
         with pytest.raises(ObjectError, match=f'"{rig.name}" cannot be written while hidden'):
             save(tmp_path / "hidden.glb", source)
     assert not (tmp_path / "hidden.glb").exists()
+
+
+@pytest.mark.parametrize("suffix", ["blend", "obj", "ply", "stl", "fbx", "glb", "gltf"])
+def test_a_disk_without_room_for_the_end_of_a_file_is_told(suffix, tmp_path):
+    path, obj = tmp_path / f"body.{suffix}", add_blob("Body")
+    path.write_text("old")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5000, before[1]))  # writing stops there as on a full disk
+    try:
+        with pytest.raises(ObjectError, match="cannot be written"):
+            save(path, obj)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [path] == list(tmp_path.iterdir())
+    assert path.read_text() == "old"
+    faces = len(obj.data.polygons)
+    save(path, obj)
+    (back,), _ = load_meshes([MeshArgument(path)])
+    assert len(back.data.polygons) >= faces
 
 
 @pytest.mark.parametrize("suffix", ["obj", "ply", "stl", "fbx", "glb", "gltf"])
