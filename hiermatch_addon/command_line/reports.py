@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from ..jobs.transfer_job import Carried
+    from ..jobs.verdict import Verdict
     from ..scene.character import Side
     from ..storage.stored_match import StoredMatch
     from .meshes import MeshArgument
@@ -130,6 +131,10 @@ class Report:
             self.carried.append({"target": one.target, "done": done, "confidence": confidence})
             for part in one.reports:
                 self.add_notes((*part.notes, *part.remarks))
+
+    def add_doubts(self, doubts: Sequence[tuple[str, Verdict]]) -> None:
+        """Say for which targets nothing was carried over, and how little their matches can be trusted."""
+        self.carried += [{"target": name, "done": [], "confidence": one.confidence} for name, one in doubts]
 
     def add_notes(self, notes: Sequence[str]) -> None:
         """Add what should be known, once."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 import bpy
 
 from ..common.access import view_layer_of
+from ..common.errors import DoubtfulMatchError
 from ..jobs.match_job import job_options
 from ..jobs.transfer_job import TransferJob, TransferOptions
 from ..properties.freshness import refresh
@@ -127,7 +128,11 @@ def run_transfers(
         source, target = pair if choose is None else choose(options, pair)
         context = bpy.context
         job = start(options, (source, target), settings)
-        drive(job, console)
+        try:
+            drive(job, console)
+        except DoubtfulMatchError:
+            report.add_doubts(job.doubts)
+            raise
         carried = job.finish(context)
         outcome = carried[0].outcome
         if outcome is not None:

@@ -30,12 +30,17 @@ def doubtful(dense_pair, tmp_path, monkeypatch):
 def test_it_fails_with_a_sentence_unless_it_is_accepted(doubtful, command, tmp_path, capsys):
     output, report = tmp_path / "out.blend", tmp_path / "report.json"
     arguments = [command[0], *doubtful, *command[1:], "--no-refine", f"--output={output}", f"--report={report}"]
+    arguments.append("--least-confidence=1.5")
     assert main(arguments) == 1
     said = capsys.readouterr().err
     assert 'The match of "Source" and "Target" is doubtful' in said
     assert "landmarks" in said
     assert not output.exists()
-    assert json.loads(report.read_text())["status"] == "failed"
+    told = json.loads(report.read_text())
+    assert (told["status"], told["doubtful"]) == ("failed", True)
+    ((target, done, confidence),) = (one.values() for one in told["carried"])
+    assert (target, done) == ("Target", [])
+    assert f"Confidence {confidence:.0%}" in said
     assert main([*arguments, "--accept-doubtful"]) == 0
     assert output.exists()
     assert json.loads(report.read_text())["status"] == "done"
