@@ -11,7 +11,7 @@ from ...common.file_writing import check_place
 from ..command import EXIT_CODES, ExitCode, UsageError
 from ..console import Console, interruptible
 from ..options import add_options, given_options, option_names, quoted_names
-from ..reports import add_least_confidence, file_state
+from ..reports import add_least_confidence
 from .ledger import Ledger, counts, summary_rows
 from .manifest import COMMANDS, read_manifest, take_shard
 from .workers import Ended, Task, run_tasks
@@ -113,16 +113,16 @@ def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namesp
     """Run all pairs that have no report yet, or one that is not to count."""
     tasks = _tasks(pairs, ledger, parsed, console)
     before, ended = len(pairs) - len(tasks), 0
-    events = run_tasks([task for task, _, _ in tasks.values()], parsed.jobs, parsed.timeout)
+    events = run_tasks([task for task, _ in tasks.values()], parsed.jobs, parsed.timeout)
     try:
         for event in events:
             if isinstance(event, Ended):
                 ended += 1
-                _, pair, inputs = tasks[event.task.name]
+                _, pair = tasks[event.task.name]
                 if event.lacking:
                     _leave(pair, tasks[event.lacking][1], ledger, console)
                 else:
-                    _close(pair, inputs, event, ledger, console)
+                    _close(pair, event, ledger, console)
             elif console.is_terminal:  # elsewhere the lines about what has ended are enough
                 names = ", ".join(tasks[name][1].name for name in event)
                 console.progress((before + ended) / len(pairs), f"{before + ended} of {len(pairs)}, at {names}")
@@ -132,13 +132,13 @@ def _work_through(pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namesp
 
 def _tasks(
     pairs: Sequence[Pair], ledger: Ledger, parsed: argparse.Namespace, console: Console
-) -> dict[str, tuple[Task, Pair, list[dict[str, Any]]]]:
-    """Make the tasks of all pairs that are to be run: by name the task, the pair and the state of its files.
+) -> dict[str, tuple[Task, Pair]]:
+    """Make the tasks of all pairs that are to be run: by name the task and the pair.
 
     One that reads what another is to write is run after that one, even if it was done before, and not at all if that
     one has failed.
     """
-    tasks: dict[str, tuple[Task, Pair, list[dict[str, Any]]]] = {}
+    tasks: dict[str, tuple[Task, Pair]] = {}
     writers: dict[str, str] = {}
     failed: dict[str, Pair] = {}
     known = 0
@@ -154,9 +154,9 @@ def _tasks(
             failed |= dict.fromkeys(pair.written, pair)
             continue
         try:
-            arguments, inputs = _checked_arguments(pair, parsed.check)
+            arguments = _checked_arguments(pair, parsed.check)
         except UsageError as error:
-            ledger.fail(pair, [], None, f"{error}.")
+            ledger.fail(pair, None, f"{error}.")
             console.error(f"{pair.name}: {error}.")
             failed |= dict.fromkeys(pair.written, pair)
             continue
@@ -165,7 +165,7 @@ def _tasks(
         if pair.command != "match" and "accept_doubtful" not in dict(pair.options):
             told.append("--accept-doubtful")  # one bad pair of many is looked at later: the summary names it
         ledger.forget(pair)  # else that of a former run would stand for a crashed one
-        tasks[pair.stem] = Task(pair.stem, [*arguments, *told], ledger.log_path(pair), after), pair, inputs
+        tasks[pair.stem] = Task(pair.stem, [*arguments, *told], ledger.log_path(pair), after), pair
         writers |= dict.fromkeys(pair.written, pair.stem)
     if known:
         console.say(f"{known} of {len(pairs)} pairs are known already.")
@@ -177,26 +177,22 @@ def _leave(pair: Pair, other: Pair, ledger: Ledger, console: Console) -> None:
     if ledger.report_of(other) is None:
         return  # that one is still to be done, and so is this one
     error = f'It was not begun: it reads what "{other.name}" writes, and that failed.'
-    ledger.fail(pair, [], None, error, lacking=other.name)
+    ledger.fail(pair, None, error, lacking=other.name)
     console.error(f"{pair.name}: failed. {error}")
 
 
-def _checked_arguments(pair: Pair, check: Callable[[list[str]], object]) -> tuple[list[str], list[dict[str, Any]]]:
-    """Return the arguments of a child, of which it is sure that they are some, and the state of its files."""
+def _checked_arguments(pair: Pair, check: Callable[[list[str]], object]) -> list[str]:
+    """Return the arguments of a child, of which it is sure that they are some."""
     arguments = pair.arguments()
     if pair.command != "match" and not pair.written:  # what is left of a match is its report
         raise UsageError("output is empty, so nothing would be left of the work. Name the file to write")
-    try:
-        check(arguments)
-        paths = pair.inputs
-    except argparse.ArgumentTypeError as error:
-        raise UsageError(str(error)) from error
+    check(arguments)
     if set(pair.written) & set(pair.read):
         raise UsageError("it would write over its own source or target")  # and never be known as done
-    return arguments, [file_state(path) for path in paths]
+    return arguments
 
 
-def _close(pair: Pair, inputs: list[dict[str, Any]], ended: Ended, ledger: Ledger, console: Console) -> None:
+def _close(pair: Pair, ended: Ended, ledger: Ledger, console: Console) -> None:
     """Make sure that there is a report of a child that has ended, and tell what became of it."""
     report = ledger.report_of(pair)
     log = ledger.log_path(pair)
@@ -209,7 +205,7 @@ def _close(pair: Pair, inputs: list[dict[str, Any]], ended: Ended, ledger: Ledge
             error = f"Its Blender was ended by the signal {-ended.code}; out of memory, perhaps. See {log}."
         else:
             error = f"Its Blender has ended with the exit code {ended.code} and left no report. See {log}."
-        ledger.fail(pair, inputs, ended, error)
+        ledger.fail(pair, ended, error)
         report = ledger.report_of(pair)
     status, error = (report["status"], report["error"]) if report else ("pending", "Its files were changed meanwhile.")
     if status == "done":

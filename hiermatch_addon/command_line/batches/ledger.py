@@ -95,9 +95,7 @@ class Ledger:
         written = [*pair.outputs, *filter(None, [pair.map])] if report["status"] == "done" else []
         return report if all(Path(path).is_file() for path in written) else None
 
-    def fail(
-        self, pair: Pair, inputs: list[dict[str, Any]], ended: Ended | None, error: str, *, lacking: str = ""
-    ) -> None:
+    def fail(self, pair: Pair, ended: Ended | None, error: str, *, lacking: str = "") -> None:
         """Write the report that a child did not write itself, also of one that was not begun for lack of another."""
         status = "failed" if ended is None else "timeout" if ended.timeout else "crashed"
         report = {
@@ -110,7 +108,7 @@ class Ledger:
             "error": error,
             "doubtful": False,
             "seconds": 0.0 if ended is None else round(ended.seconds, 3),
-            "inputs": inputs,
+            "inputs": [] if ended is None else [file_state(path) for path in pair.inputs],
             "objects": {},
             "match": None,
             "carried": [],

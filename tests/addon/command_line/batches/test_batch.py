@@ -511,6 +511,19 @@ def test_a_row_that_reads_what_came_to_nothing_is_not_begun(stand_in, capsys, se
     assert stand_in.run() == (0, ["a"])
 
 
+@pytest.mark.parametrize(("name", "status"), [("crash", "crashed"), ("slow", "timeout")])
+def test_one_that_reads_what_another_writes_may_crash_as_any(stand_in, name, status):
+    stand_in.write(["a", name])
+    stand_in.manifest.write_text(
+        f"source,target,output\na.obj,target.obj,out/a.obj\n{name}.obj,out/a.obj,out/{name}.blend"
+    )
+    assert stand_in.run("--timeout=2") == (4, ["a", name])
+    assert stand_in.summary[name]["status"] == status
+    assert stand_in.run("--timeout=2") == (4, [])
+    (stand_in.folder / "out" / "a.obj").unlink()
+    assert stand_in.run("--timeout=2")[1] == ["a", name]
+
+
 def test_nor_is_one_that_reads_what_a_row_with_a_wrong_value_would_write(stand_in):
     follow(stand_in, "a.txt,target.obj,out/a.obj")
     assert stand_in.run() == (4, ["b", "d"])
