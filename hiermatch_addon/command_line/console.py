@@ -15,6 +15,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..common.errors import ObjectError
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import FrameType
@@ -60,11 +62,20 @@ class Console:
             os.dup2(os.open(os.devnull, os.O_WRONLY) if quiet else _ERRORS, _OUTPUT)
 
     def result(self, text: str) -> None:
-        """Write a result."""
-        if self._result is None:
-            sys.stdout.write(text)
-        else:
-            _write(self._result, text)
+        """Write a result.
+
+        Raises
+        ------
+        ObjectError
+            If nobody takes it, or the disk is full that it goes to.
+        """
+        try:
+            if self._result is None:
+                sys.stdout.write(text)
+            else:
+                _write(self._result, text)
+        except OSError as error:
+            raise ObjectError(f"The standard output cannot be written: {error.strerror or error}.") from error
 
     def error(self, sentence: str) -> None:
         """Say what went wrong."""

@@ -37,6 +37,7 @@ __all__ = [
     "Report",
     "add_least_confidence",
     "add_report_options",
+    "as_json",
     "confidence_of",
     "file_state",
     "run_reported",
@@ -202,6 +203,11 @@ def confidence_of(match: dict[str, Any] | None, carried: Sequence[dict[str, Any]
     return min((one["confidence"] for one in known if one.get("confidence") is not None), default=None)
 
 
+def as_json(plain: dict[str, Any]) -> bytes:
+    """Return the content of a file; of names of files that are no UTF-8 what is none stays escaped."""
+    return (json.dumps(plain, indent=1, ensure_ascii=False) + "\n").encode(errors="backslashreplace")
+
+
 def file_state(path: Path) -> dict[str, Any]:
     """Return by what a file is recognised as unchanged; size and time are None if there is none."""
     try:
@@ -321,11 +327,10 @@ def _write(where: str | None, plain: dict[str, Any], console: Console) -> None:
     """Write a report, if one is wanted."""
     if where is None:
         return
-    text = json.dumps(plain, indent=1, ensure_ascii=False) + "\n"
     if where == "-":
-        console.result(text)
+        console.result(as_json(plain).decode())
     else:
-        write_whole(Path(where).absolute(), text.encode())
+        write_whole(Path(where).absolute(), as_json(plain))
 
 
 def _told(report: Report) -> str:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...common.file_writing import write_whole
-from ..reports import FORMAT, STATUSES, confidence_of, file_state
+from ..reports import FORMAT, STATUSES, as_json, confidence_of, file_state
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,7 +115,7 @@ class Ledger:
             "notes": [],
             "written": [],
         } | ({"lacking": lacking} if lacking else {})
-        write_whole(self.report_path(pair), (json.dumps(report, indent=1, ensure_ascii=False) + "\n").encode())
+        write_whole(self.report_path(pair), as_json(report))
 
     def write_summary(self, rows: Sequence[dict[str, Any]], name: str) -> Path:
         """Write a summary as CSV and as JSON, and return where the first is."""
@@ -124,10 +124,9 @@ class Ledger:
         table.writeheader()
         table.writerows({column: "" if row[column] is None else row[column] for column in _COLUMNS} for row in rows)
         path = self.folder / f"{name}.csv"
-        write_whole(path, text.getvalue().encode())
+        write_whole(path, text.getvalue().encode(errors="backslashreplace"))
         plain = {"format": "hiermatch-summary", "version": 1, "counts": counts(rows), "pairs": list(rows)}
-        content = json.dumps(plain, indent=1, ensure_ascii=False) + "\n"
-        write_whole(path.with_suffix(".json"), content.encode())
+        write_whole(path.with_suffix(".json"), as_json(plain))
         return path
 
 

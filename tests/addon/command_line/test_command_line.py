@@ -74,6 +74,28 @@ def test_a_report_can_go_to_the_output(folder, capsys):
     assert json.loads(out[out.index("{") :])["match"]["points"] == 12
 
 
+def test_a_report_tells_of_names_that_are_no_utf_8(folder, tmp_path):
+    named = tmp_path / os.fsdecode(b"h\xe9ro.obj")
+    named.write_bytes((folder / "Source.obj").read_bytes())
+    output, report = tmp_path / os.fsdecode(b"\xe9.stl"), tmp_path / "report.json"
+    arguments = [str(named), str(folder / "Target.obj"), f"--output={output}", f"--report={report}"]
+    assert main(["match", *arguments, *flags(QUICK)]) == 0
+    told = report_of(report)
+    assert (told["inputs"][0]["path"], told["written"]) == (str(named), [str(output)])
+    assert output.is_file()
+
+
+def test_a_report_that_nobody_takes_is_told():
+    kept, (taken, given) = os.dup(1), os.pipe()
+    os.close(taken)
+    os.dup2(given, 1)
+    try:
+        with pytest.raises(ObjectError, match="The standard output cannot be written"):
+            console.Console(quiet=True, own_process=True).result("{}")
+    finally:
+        os.dup2(kept, 1)
+
+
 def test_strict_tells_of_a_doubtful_match(pair, tmp_path):
     arguments = [*pair, "--strict", "--least-confidence=1.5", f"--report={tmp_path / 'r.json'}", *flags(DENSE)]
     assert main(["match", *arguments]) == 3

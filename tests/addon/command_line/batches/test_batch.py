@@ -104,6 +104,19 @@ def test_all_pairs_are_done_and_summed_up(stand_in, capsys):
     assert stand_in.run() == (0, [])
 
 
+def test_a_summary_tells_of_names_that_are_no_utf_8(stand_in):
+    stand_in.write(["a"])
+    folder = stand_in.folder / os.fsdecode(b"d\xe9p\xf4t")
+    folder.mkdir()
+    for name in ("a.obj", "target.obj", "pairs.csv"):
+        (stand_in.folder / name).rename(folder / name)
+    stand_in.folder, stand_in.manifest = folder, folder / "pairs.csv"
+    assert stand_in.run() == (0, ["a"])
+    assert stand_in.summary["a"]["status"] == "done"
+    plain = json.loads((folder / "pairs.csv.hiermatch" / "summary.json").read_text())
+    assert plain["pairs"][0]["source"] == str(folder / "a.obj")
+
+
 def test_what_breaks_breaks_alone(stand_in, capsys):
     stand_in.write(["a", "bad", "crash", "silent", "b"])
     code, tried = stand_in.run("--jobs=2")
