@@ -195,8 +195,9 @@ def _number(described: Any) -> Callable[[str], float]:  # noqa: ANN401 - a prope
 
     def parse(text: str) -> float:
         try:
-            # Blender's numbers are of single precision, on the command line as well as in its panels.
-            number = int(text) if whole else float(np.float32(float(text)))
+            # Blender's numbers are of single precision, on the command line as well as in its panels; tables may hold
+            # whole ones as 64.0.
+            number = int(text.removesuffix(".0")) if whole else float(np.float32(float(text)))
         except ValueError:
             raise argparse.ArgumentTypeError(f'"{text}" is no {"whole " if whole else ""}number') from None
         if not (math.isfinite(number) and least <= number <= most):

@@ -13,6 +13,7 @@ import bpy
 import pytest
 from hiermatch.hiermatch_addon import command_line
 from hiermatch.hiermatch_addon.command_line import console, match, options, reports
+from hiermatch.hiermatch_addon.command_line.command import UsageError
 from hiermatch.hiermatch_addon.command_line.meshes import MeshArgument, load_meshes, mesh_argument
 from hiermatch.hiermatch_addon.command_line.operator_errors import said_by
 from hiermatch.hiermatch_addon.command_line.outputs import save
@@ -368,6 +369,19 @@ def test_table_values_become_arguments():
     assert options.to_arguments("match", "alternative", "2") == ["--alternative=2"]
     assert options.to_arguments("match", "exclude_source", "-eyes") == ["--exclude-source=-eyes"]
     assert options.to_arguments("match", "points", "") == []
+
+
+def test_whole_numbers_may_be_written_as_tables_write_them():
+    parser = options.Parser()
+    options.add_options(parser, "match")
+    (points,) = options.to_arguments("match", "points", "64.0")
+    assert options.given_options("match", parser.parse_args([points, "--node-limit=16777217"])) == {
+        "points": 64,
+        "node_limit": 16777217,
+    }
+    for wrong in ("64.5", "inf", "nan", "many"):
+        with pytest.raises(UsageError, match=f'"{wrong}" is no whole number'):
+            parser.parse_args([f"--points={wrong}"])
 
 
 def test_progress_is_plain_where_there_is_no_terminal(capsys):
