@@ -335,9 +335,10 @@ def _check_outputs(pairs: Sequence[Pair]) -> None:
         readers |= dict.fromkeys(pair.read, pair.number)
         for written in (*pair.written, pair.stem):
             if written in writers:
+                same = pair.name if written == pair.stem else written
                 raise ObjectError(
                     f"Rows {writers[written]} and {pair.number} of the manifest write the same, "
-                    f'"{written}". Give each pair an output of its own.'
+                    f'"{same}". Give each pair an output of its own, or a name if it has none.'
                 )
             writers[written] = pair.number
 

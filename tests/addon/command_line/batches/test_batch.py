@@ -410,7 +410,10 @@ def test_json_has_options_for_all(tmp_path):
         ("source,target\n", "lists no pairs"),
         ("", "lists no pairs"),
         ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,o.blend\n", "Rows 1 and 2"),
-        ("source,target\na.obj,b.obj\na.obj,b.obj\n", "Rows 1 and 2"),
+        (
+            "source,target,points\na.obj,b.obj,32\na.obj,b.obj,64\n",
+            'Rows 1 and 2 .* write the same, "a-b".* or a name if it has none',
+        ),
         ("source,target,output\na.obj,b.obj,o.blend\na.obj,c.obj,./new/../o.blend\n", "Rows 1 and 2"),
         (
             "source,target,output\na.obj:A,b.obj,o.blend\nc.obj,b.obj,./a.obj\n",
