@@ -71,7 +71,9 @@ def mesh_argument(text: str) -> MeshArgument:
     raise argparse.ArgumentTypeError(f'"{text}" names no file that ends with {", ".join(_KINDS)}')
 
 
-def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tuple[list[Side], list[str]]:
+def load_meshes(
+    arguments: Sequence[MeshArgument], *, whole: bool = True, last_first: bool = False
+) -> tuple[list[Side], list[str]]:
     """Load meshes and characters, of one or several files, into one scene.
 
     The first .blend among the files is opened as a whole; all else is added to it.
@@ -82,6 +84,8 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
         Files, and what is meant in them: a mesh, an armature with all meshes that it moves, or a collection.
     whole : bool
         Whether a file of several meshes on one armature means all of them, if no name is given.
+    last_first : bool
+        Whether the last one is added first: of two things of one name that which is added later gets a number.
 
     Returns
     -------
@@ -100,13 +104,13 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
             raise ObjectError(f'There is no file "{argument.path}".')
     opened = next((one.path for one in arguments if one.path.suffix.lower() == ".blend"), None)
     _start(opened)
+    objects = list(view_layer_of(bpy.context).objects)  # those of the opened file alone
     imported: dict[Path, list[bpy.types.Object]] = {}
     found: list[Side] = []
     notes: list[str] = []
-    for argument in arguments:
+    for argument in reversed(arguments) if last_first else arguments:
         path = argument.path
         if opened is not None and path.samefile(opened):
-            objects = list(view_layer_of(bpy.context).objects)
             chosen = _named(argument, objects, numbered=False) or (whole and _only_character(argument, objects))
             chosen = chosen or _choose([obj for obj in objects if obj.type == "MESH"], argument)
         elif path.suffix.lower() == ".blend":
@@ -116,6 +120,8 @@ def load_meshes(arguments: Sequence[MeshArgument], *, whole: bool = True) -> tup
                 imported[path.resolve()] = _import(path)
             chosen = _chosen_of_import(imported[path.resolve()], argument, notes, whole=whole)
         found.append(chosen)
+    if last_first:
+        found.reverse()
     context = bpy.context
     for obj in (part for side in found for part in parts_of(side)):
         if obj.mode != "OBJECT":

@@ -23,7 +23,7 @@ from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES
 from hiermatch.hiermatch_addon.storage.match_file import load_match
 
 from tests.addon.rigs import add_rigged_pair
-from tests.addon.scenes import DENSE, QUICK
+from tests.addon.scenes import DENSE, QUICK, add_blob
 
 
 def flags(settings):
@@ -73,6 +73,20 @@ def test_a_report_can_go_to_the_output(folder, capsys):
     assert main(["match", *objs, "--report=-", "--quiet", *flags(QUICK)]) == 0
     out = capsys.readouterr().out
     assert json.loads(out[out.index("{") :])["match"]["points"] == 12
+
+
+@pytest.mark.parametrize("command", ["match", "retarget", "motion", "my-rig", "wear"])
+def test_the_target_keeps_names_where_no_option_names_things_of_the_source(command, tmp_path):
+    for name in ("hero", "crowd"):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        save(tmp_path / f"{name}.obj", add_blob("Body"))
+    report = tmp_path / "report.json"
+    arguments = [str(tmp_path / "hero.obj"), str(tmp_path / "crowd.obj"), f"--report={report}"]
+    options = {"match": flags(QUICK), "retarget": ["--no-use-uvs"]}.get(command, [])
+    assert main([command, *arguments, *options]) == (0 if command == "match" else 1)  # there is nothing to carry
+    names = {role: told["object"] for role, told in report_of(report)["objects"].items()}
+    first, second = ("target", "source") if command in {"match", "retarget"} else ("source", "target")
+    assert names == {first: "Body", second: "Body.001"}
 
 
 def test_a_report_tells_of_names_that_are_no_utf_8(folder, tmp_path):

@@ -123,6 +123,32 @@ def test_an_import_of_a_character_is_taken_as_a_whole(tmp_path):
     assert one in bpy.context.view_layer.objects.values()
 
 
+@pytest.mark.parametrize("suffix", ["obj", "fbx", "glb"])
+def test_what_is_added_first_keeps_the_names_that_both_files_have(suffix, tmp_path):
+    paths = [tmp_path / f"{name}.{suffix}" for name in ("hero", "crowd")]
+    for path, size in zip(paths, (12, 16), strict=True):
+        bpy.ops.wm.read_homefile(use_empty=True)
+        obj = add_blob("Body", size)
+        obj.data.materials.append(bpy.data.materials.new("Skin"))
+        save(path, obj)
+    for name in ("", "Body"):
+        for last_first in (False, True):
+            (source, target), _ = load_meshes([MeshArgument(path, name) for path in paths], last_first=last_first)
+            assert len(source.data.vertices) < len(target.data.vertices)
+            kept = target if last_first else source
+            assert (kept.name, kept.data.materials[0].name) == ("Body", "Skin")
+
+
+def test_what_is_imported_is_no_choice_of_the_blend_beside(tmp_path):
+    save(tmp_path / "other.obj", add_blob("Other"))
+    bpy.data.objects["Other"].name = "Body"
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "body.blend"))
+    paths = [MeshArgument(tmp_path / name) for name in ("body.blend", "other.obj")]
+    for order in (1, -1):
+        sides, _ = load_meshes(paths[::order])
+        assert [side.name for side in sides[::order]] == ["Body", "Other"]
+
+
 def test_what_an_importer_shows_bones_by_is_no_mesh_of_the_file(tmp_path):
     source, _ = add_rigged(resolution=4)
     save(tmp_path / "one.glb", source)
