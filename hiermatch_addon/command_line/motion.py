@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..properties.bone_pairs import load_pairs, save_pairs
+from ..scene.motion.action_curves import actions_of
 from ..scene.motion.carried_action_io import carried_before
 from ..scene.motion.rigs import rig_of, two_rigs
 from ..transfers.motion.motion_job import MotionJob
@@ -66,6 +67,8 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         scene, rigs = cast("bpy.types.Scene", bpy.context.scene), two_rigs(*pair, written=True)
         if parsed.pairs is not None:
             load_pairs(scene, *rigs, parsed.pairs)
+        if parsed.source.path.suffix.lower() != ".blend":
+            options.action = _as_numbered(options.action, rigs[0])
         plan = motion_plan(scene, options, rigs[0])
         names.extend(plan.actions)
         return MotionJob(bpy.context, pair[0], [pair[1]], plan, how)
@@ -80,3 +83,15 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         save_outputs(parsed, report, pair[1], console, clean=True, clips=clips)
 
     return run_transfers(parsed, console, "retarget_action", start, finish=finish)
+
+
+def _as_numbered(text: str, rig: bpy.types.Object) -> str:
+    """Return what a text names actions of an imported rig by, as they are called here.
+
+    Where the target's file has an action of that name, Blender has given the imported one a number.
+    """
+    own = {action.name for action in actions_of(rig)}
+    called = {name.rpartition(".")[0]: name for name in own if name.rpartition(".")[2].isdecimal()}
+    called |= dict(zip(own, own, strict=True))
+    parts = [text] if text in called else text.split(";")
+    return ";".join(called.get(part.strip(), part) for part in parts)

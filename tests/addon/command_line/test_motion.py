@@ -57,6 +57,23 @@ def test_actions_by_a_pattern_go_to_another_rig_of_the_same_file(folder):
     assert bpy.data.objects["B"].animation_data is None  # the tracks are for the other file only
 
 
+@pytest.mark.parametrize("named", ["Walk", "Nod; Walk"])
+def test_an_action_is_the_one_of_the_source_s_file_if_the_target_plays_one_of_that_name(named, folder):
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "A.blend"))
+    bpy.ops.export_scene.gltf(filepath=str(folder / "A.glb"), export_animation_mode="ACTIONS")
+    bpy.ops.wm.read_homefile(use_empty=True)
+    bpy.ops.import_scene.gltf(filepath=str(folder / "A.glb"))
+    bpy.data.batch_remove(bpy.data.actions[:])
+    bpy.data.objects["A"].name = "B"  # whose bones have the same names
+    add_action(bpy.data.objects["B"], "Walk", frames=(1, 31, 61))
+    bpy.ops.wm.save_as_mainfile(filepath=str(folder / "moving.blend"))
+    arguments = [str(folder / "A.glb"), str(folder / "moving.blend"), f"--action={named}"]
+    assert main(["motion", *arguments, f"--output={folder / 'out.blend'}"]) == 0
+    bpy.ops.wm.open_mainfile(filepath=str(folder / "out.blend"))
+    made = [action for action in bpy.data.actions if action.name.startswith("Walk") and action.name.endswith(" B")]
+    assert [round(action.frame_range[1]) for action in made] == [21]
+
+
 def test_what_is_carried_again_in_its_place_is_a_clip_again(folder):
     arguments = ["motion", *(f"{folder / 'both.blend'}:{name}" for name in "AB"), "--action=Walk*"]
     assert main([*arguments, f"--output={folder / 'both.blend'}"]) == 0
