@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import argparse
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast
+from uuid import uuid4
 
 import bpy
 
@@ -16,7 +18,7 @@ from ..scene.character import armatures_above, parts_of, side_of
 from .operator_errors import said_by
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Container, Iterable, Mapping, Sequence
 
     from ..scene.character import Side
 
@@ -104,20 +106,20 @@ def load_meshes(
             raise ObjectError(f'There is no file "{argument.path}".')
     opened = next((one.path for one in arguments if one.path.suffix.lower() == ".blend"), None)
     _start(opened)
-    objects = list(view_layer_of(bpy.context).objects)  # those of the opened file alone
-    imported: dict[Path, list[bpy.types.Object]] = {}
+    objects = {obj: obj.name for obj in view_layer_of(bpy.context).objects}  # those of the opened file alone
+    imported: dict[Path, dict[bpy.types.Object, str]] = {}
     found: list[Side] = []
     notes: list[str] = []
     for argument in reversed(arguments) if last_first else arguments:
         path = argument.path
         if opened is not None and path.samefile(opened):
-            chosen = _named(argument, objects, numbered=False) or (whole and _only_character(argument, objects))
+            chosen = _named(argument, objects) or (whole and _only_character(argument, objects))
             chosen = chosen or _choose([obj for obj in objects if obj.type == "MESH"], argument)
         elif path.suffix.lower() == ".blend":
             chosen = _append(argument, whole=whole)
         else:
             if path.resolve() not in imported:
-                imported[path.resolve()] = _import(path)
+                imported[path.resolve()] = _import(path, {_bare(one.name) for one in arguments})
             chosen = _chosen_of_import(imported[path.resolve()], argument, notes, whole=whole)
         found.append(chosen)
     if last_first:
@@ -131,22 +133,20 @@ def load_meshes(
     return found, notes
 
 
-def _named(argument: MeshArgument, objects: Sequence[bpy.types.Object], *, numbered: bool) -> Side | None:
+def _named(argument: MeshArgument, called: Mapping[bpy.types.Object, str]) -> Side | None:
     """Return the character whose armature or collection is named; None if a mesh has that name, or neither has.
 
-    The name of an import that was taken in the scene has got a number, so these may be `numbered`.
+    It is one of some objects, by what each of them is `called` in its file.
     """
-    if not argument.name or any(obj.type == "MESH" and obj.name == argument.name for obj in objects):
+    named = [obj for obj, name in called.items() if name == argument.name]
+    if not argument.name or any(obj.type == "MESH" for obj in named):
         return None
     view_layer_of(bpy.context).update()
-    armatures = [obj for obj in objects if obj.type == "ARMATURE"]
-    bare = [obj.name.rpartition(".")[0] for obj in armatures]
-    for called in ([obj.name for obj in armatures], *([bare] if numbered else [])):
-        for obj, name in zip(armatures, called, strict=True):
-            if name == argument.name:
-                return side_of(obj, view_layer_of(bpy.context))
+    for obj in named:
+        if obj.type == "ARMATURE":
+            return side_of(obj, view_layer_of(bpy.context))
     collection = bpy.data.collections.get(argument.name)
-    held = collection is not None and any(obj in set(objects) for obj in collection.all_objects)
+    held = collection is not None and any(obj in called for obj in collection.all_objects)
     return side_of(collection, view_layer_of(bpy.context)) if collection is not None and held else None
 
 
@@ -173,8 +173,12 @@ def _start(opened: Path | None) -> None:
         raise ObjectError(f'"{opened}" cannot be opened: {said_by(error)}') from error
 
 
-def _import(path: Path) -> list[bpy.types.Object]:
-    """Import a file and return its meshes with faces, and its armatures; not what only shows bones in the view."""
+def _import(path: Path, bare: Container[str]) -> dict[bpy.types.Object, str]:
+    """Import a file and return its meshes with faces, and its armatures; not what only shows bones in the view.
+
+    With each comes its name in the file, at least if that is a `bare` one but for a number.  Here it may have got
+    another number, as the name was taken.
+    """
     name = next((name for name in _IMPORTERS[path.suffix.lower()] if has_operator(name)), None)
     if name is None:
         raise ObjectError(
@@ -182,16 +186,36 @@ def _import(path: Path) -> list[bpy.types.Object]:
             "the file."
         )
     group, _, operator = name.partition(".")
-    before = set(bpy.data.objects)
+    known = set(bpy.data.objects)
+    before = {obj: obj.name for obj in known if obj.library is None and _bare(obj.name) in bare}
+    _call(dict.fromkeys(before))
     try:
         getattr(getattr(bpy.ops, group), operator)(filepath=str(path.resolve()))
     except RuntimeError as error:
         raise ObjectError(f'"{path}" cannot be read: {said_by(error)}') from error
-    added = [obj for obj in view_layer_of(bpy.context).objects if obj not in before]
+    called = {obj: obj.name for obj in bpy.data.objects if obj not in known}
+    for names in (dict.fromkeys(called), before, called) if before else ():
+        _call(names)
+    added = [obj for obj in view_layer_of(bpy.context).objects if obj in called]
     poses = [obj.pose for obj in added if obj.type == "ARMATURE" and obj.pose is not None]
     shapes = {bone.custom_shape for pose in poses for bone in pose.bones}
     added = [obj for obj in added if obj not in shapes]
-    return [obj for obj in added if obj.type == "ARMATURE" or (obj.type == "MESH" and len(mesh_of(obj).polygons))]
+    return {
+        obj: called[obj]
+        for obj in added
+        if obj.type == "ARMATURE" or (obj.type == "MESH" and len(mesh_of(obj).polygons))
+    }
+
+
+def _bare(name: str) -> str:
+    """Return a name without the number that Blender gives those that are taken."""
+    return re.sub(r"\.\d+$", "", name)
+
+
+def _call(names: Mapping[bpy.types.Object, str | None]) -> None:
+    """Give objects names; None stands for one that no file has."""
+    for obj, name in names.items():
+        obj.name = name or uuid4().hex
 
 
 def _append(argument: MeshArgument, *, whole: bool) -> Side:
@@ -238,7 +262,7 @@ def _only_mover(objects: Iterable[bpy.types.Object]) -> bpy.types.Object | None:
     return armatures[0] if len(armatures) == 1 else None
 
 
-def _only_character(argument: MeshArgument, objects: Sequence[bpy.types.Object]) -> Side | None:
+def _only_character(argument: MeshArgument, objects: Collection[bpy.types.Object]) -> Side | None:
     """Return what the only armature moves, if no name is given and it is not a matter of one mesh."""
     mover = _only_mover(objects)
     if argument.name or mover is None or sum(obj.type == "MESH" for obj in objects) == 1:
@@ -271,14 +295,14 @@ def _choose(meshes: Iterable[bpy.types.Object], argument: MeshArgument, names: S
 
 
 def _chosen_of_import(
-    added: Sequence[bpy.types.Object], argument: MeshArgument, notes: list[str], *, whole: bool
+    added: Mapping[bpy.types.Object, str], argument: MeshArgument, notes: list[str], *, whole: bool
 ) -> Side:
     """Return what is named of an import, or the character of the mesh with the most vertices."""
     bare = None if any(obj.type == "MESH" for obj in added) else _only_character(argument, added)
-    found = _named(argument, added, numbered=True) or bare
+    found = _named(argument, added) or bare
     if found is not None:
         return found
-    chosen = _choose_largest([obj for obj in added if obj.type == "MESH"], argument, notes)
+    chosen = _choose_largest({obj: name for obj, name in added.items() if obj.type == "MESH"}, argument, notes)
     armature = next((obj for obj in added if obj.type == "ARMATURE" and obj in armatures_above(chosen)), None)
     if argument.name or armature is None or not whole:
         return chosen
@@ -292,16 +316,14 @@ def _chosen_of_import(
     return side
 
 
-def _choose_largest(meshes: Sequence[bpy.types.Object], argument: MeshArgument, notes: list[str]) -> bpy.types.Object:
+def _choose_largest(
+    meshes: Mapping[bpy.types.Object, str], argument: MeshArgument, notes: list[str]
+) -> bpy.types.Object:
     """Return the mesh that is named, or the one with the most vertices."""
-    # A name that was taken in the scene has got a number.
-    names = {obj: obj.name for obj in meshes}
-    bare = {obj: obj.name.rpartition(".")[0] for obj in meshes}
     if argument.name:
-        for called in (names, bare):
-            for obj, name in called.items():
-                if name == argument.name:
-                    return obj
+        for obj, name in meshes.items():
+            if name == argument.name:
+                return obj
     elif meshes:
         largest = max(meshes, key=lambda obj: len(mesh_of(obj).vertices))
         if len(meshes) > 1:
@@ -310,7 +332,7 @@ def _choose_largest(meshes: Sequence[bpy.types.Object], argument: MeshArgument, 
                 "Name another one behind a colon."
             )
         return largest
-    raise ObjectError(_open_choice(argument, list(names.values())))
+    raise ObjectError(_open_choice(argument, list(meshes.values())))
 
 
 def _open_choice(argument: MeshArgument, names: Sequence[str]) -> str:

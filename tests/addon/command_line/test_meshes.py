@@ -139,6 +139,22 @@ def test_what_is_added_first_keeps_the_names_that_both_files_have(suffix, tmp_pa
             assert (kept.name, kept.data.materials[0].name) == ("Body", "Skin")
 
 
+@pytest.mark.parametrize("suffix", ["obj", "fbx", "glb"])
+def test_a_name_is_the_one_in_the_file_whatever_the_scene_has(suffix, tmp_path):
+    bodies = [add_blob(name, size) for name, size in (("Body", 12), ("Body.001", 16))]
+    save(tmp_path / f"two.{suffix}", bodies[0], along=bodies[1:])
+    bpy.data.objects.remove(bodies[1])
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "one.blend"))
+    counts = []
+    for name in ("Body", "Body.001"):
+        sides, _ = load_meshes([MeshArgument(tmp_path / "one.blend"), MeshArgument(tmp_path / f"two.{suffix}", name)])
+        counts.append(len(sides[1].data.vertices))
+        assert sides[0].name == "Body"
+    assert counts[0] < counts[1]
+    with pytest.raises(ObjectError, match=r'no mesh called "Body.002"\. It has "Body", "Body.001"\.$'):
+        load_meshes([MeshArgument(tmp_path / "one.blend"), MeshArgument(tmp_path / f"two.{suffix}", "Body.002")])
+
+
 def test_what_is_imported_is_no_choice_of_the_blend_beside(tmp_path):
     save(tmp_path / "other.obj", add_blob("Other"))
     bpy.data.objects["Other"].name = "Body"
