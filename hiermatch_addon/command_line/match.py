@@ -98,9 +98,9 @@ def warn_if_nothing_is_written(parsed: argparse.Namespace, console: Console) -> 
 
 def load_pair(parsed: argparse.Namespace, report: Report) -> tuple[Side, Side]:
     """Load source and target."""
-    # What goes on has the names of the target's file; but options of the other commands name actions and objects of the
+    # What goes on has the names of the target's file; but options of some commands name actions and objects of the
     # source's.
-    target_first = parsed.command in {"match", "retarget"}
+    target_first = parsed.command not in {"motion", "my-rig", "wear"}
     (source, target), notes = load_meshes([parsed.source, parsed.target], last_first=target_first)
     report.add_object("source", parsed.source, source)
     report.add_object("target", parsed.target, target)

@@ -75,17 +75,17 @@ def test_a_report_can_go_to_the_output(folder, capsys):
     assert json.loads(out[out.index("{") :])["match"]["points"] == 12
 
 
-@pytest.mark.parametrize("command", ["match", "retarget", "motion", "my-rig", "wear"])
+@pytest.mark.parametrize("command", ["match", "retarget", "export", "motion", "my-rig", "wear"])
 def test_the_target_keeps_names_where_no_option_names_things_of_the_source(command, tmp_path):
     for name in ("hero", "crowd"):
         bpy.ops.wm.read_homefile(use_empty=True)
         save(tmp_path / f"{name}.obj", add_blob("Body"))
     report = tmp_path / "report.json"
     arguments = [str(tmp_path / "hero.obj"), str(tmp_path / "crowd.obj"), f"--report={report}"]
-    options = {"match": flags(QUICK), "retarget": ["--no-use-uvs"]}.get(command, [])
+    options = {"match": flags(QUICK), "retarget": ["--no-use-uvs"], "export": ["m.npz"]}.get(command, [])
     assert main([command, *arguments, *options]) == (0 if command == "match" else 1)  # there is nothing to carry
     names = {role: told["object"] for role, told in report_of(report)["objects"].items()}
-    first, second = ("target", "source") if command in {"match", "retarget"} else ("source", "target")
+    first, second = ("source", "target") if command in {"motion", "my-rig", "wear"} else ("target", "source")
     assert names == {first: "Body", second: "Body.001"}
 
 
