@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..properties.bone_pairs import load_pairs, save_pairs
-from ..scene.motion.action_curves import actions_of
+from ..scene.motion.action_curves import actions_of, playing
 from ..scene.motion.carried_action_io import carried_before
 from ..scene.motion.rigs import rig_of, two_rigs
 from ..transfers.motion.motion_job import MotionJob
@@ -90,8 +90,9 @@ def _as_numbered(text: str, rig: bpy.types.Object) -> str:
 
     Where the target's file has an action of that name, Blender has given the imported one a number.
     """
-    own = {action.name for action in actions_of(rig)}
-    called = {name.rpartition(".")[0]: name for name in own if name.rpartition(".")[2].isdecimal()}
-    called |= dict(zip(own, own, strict=True))
+    called: dict[str, str] = {}
+    for names in ([action.name for action in actions_of(rig)], playing(rig)):  # what it plays is certainly its own
+        called |= {name.rpartition(".")[0]: name for name in names if name.rpartition(".")[2].isdecimal()}
+        called |= dict(zip(names, names, strict=True))
     parts = [text] if text in called else text.split(";")
     return ";".join(called.get(part.strip(), part) for part in parts)

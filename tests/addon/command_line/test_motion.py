@@ -57,15 +57,18 @@ def test_actions_by_a_pattern_go_to_another_rig_of_the_same_file(folder):
     assert bpy.data.objects["B"].animation_data is None  # the tracks are for the other file only
 
 
+@pytest.mark.parametrize("plays", [True, False])
 @pytest.mark.parametrize("named", ["Walk", "Nod; Walk"])
-def test_an_action_is_the_one_of_the_source_s_file_if_the_target_plays_one_of_that_name(named, folder):
+def test_an_action_is_the_one_of_the_source_s_file_if_the_target_s_has_one_of_that_name(named, plays, folder):
     bpy.ops.wm.open_mainfile(filepath=str(folder / "A.blend"))
     bpy.ops.export_scene.gltf(filepath=str(folder / "A.glb"), export_animation_mode="ACTIONS")
     bpy.ops.wm.read_homefile(use_empty=True)
     bpy.ops.import_scene.gltf(filepath=str(folder / "A.glb"))
     bpy.data.batch_remove(bpy.data.actions[:])
     bpy.data.objects["A"].name = "B"  # whose bones have the same names
-    add_action(bpy.data.objects["B"], "Walk", frames=(1, 31, 61))
+    add_action(bpy.data.objects["B"], "Walk", frames=(1, 31, 61)).use_fake_user = True
+    if not plays:
+        bpy.data.objects["B"].animation_data_clear()
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "moving.blend"))
     arguments = [str(folder / "A.glb"), str(folder / "moving.blend"), f"--action={named}"]
     assert main(["motion", *arguments, f"--output={folder / 'out.blend'}"]) == 0
