@@ -278,18 +278,18 @@ def _rotations(quaternions: Floats) -> Floats:
 
 
 def least_turns(start: Floats, end: Floats) -> Floats:
-    """Find the rotations by the least angle from unit vectors (b, 3) to others, (b, 3, 3); none from or to zero."""
+    """Find the rotations by the least angle from unit vectors (..., 3) to others, (..., 3, 3); none from or to zero."""
     # Two reflections: first the start to its negative, then that to the end; the other way round near half a turn.
-    cosine = (start * end).sum(axis=1)
+    cosine = (start * end).sum(axis=-1)
     middle = unit_vectors(start + end)
     opposite = cosine < -1 + 1e-9
     if opposite.any():
         least = np.abs(start[opposite]).argmin(axis=1)
         middle[opposite] = across_axes(np.eye(3)[least], start[opposite])
-    first = np.eye(3) - 2 * start[:, :, None] * start[:, None]
-    second = np.eye(3) - 2 * middle[:, :, None] * middle[:, None]
-    known = start.any(axis=1) & end.any(axis=1)
-    return np.where(known[:, None, None], second @ first, np.eye(3))
+    first = np.eye(3) - 2 * start[..., :, None] * start[..., None, :]
+    second = np.eye(3) - 2 * middle[..., :, None] * middle[..., None, :]
+    known = start.any(axis=-1) & end.any(axis=-1)
+    return np.where(known[..., None, None], second @ first, np.eye(3))
 
 
 def across_axes(vectors: Floats, axes: Floats) -> Floats:

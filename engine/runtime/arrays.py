@@ -87,7 +87,7 @@ def evenly(count: int, most: int) -> Ints:
 
 
 def unit_vectors(vectors: Floats, least: float = 0.0) -> Floats:
-    """Scale vectors (n, d) to length one; those that are no longer than `least` become zero."""
+    """Scale vectors (..., d) to length one; those that are no longer than `least` become zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > least)
 

@@ -252,4 +252,4 @@ def radius_of(part: TriangleMesh) -> float:
 def _swung(rotation: Floats, arm: Floats, there: Floats) -> Floats:
     """Turn an arm (3,) as a rotation does, and then the shortest way to the direction where it is there (3,)."""
     start, end = unit_vectors(np.stack([rotation @ arm, there]))
-    return least_turns(start[None], end[None])[0] @ rotation
+    return least_turns(start, end) @ rotation

@@ -180,7 +180,7 @@ def _aligned(sides: list[tuple[_Limb, _Limb]], known: Floats) -> Ints:
 
 def _costs(here: _Limb, there: _Limb) -> tuple[Floats, Floats, Floats, float]:
     """Find what it costs to pair bones (a, b), that bones share a partner (a,) and (b,), and that widths differ."""
-    turn = least_turns(here.ways[:1], there.ways[:1])[0]
+    turn = least_turns(here.ways[0], there.ways[0])
     apart = ((here.places[:, None] - there.places) / _PLACE) ** 2 + _cost(here.ways @ turn.T @ there.ways.T)
     return apart, here.bends, there.bends, _WIDTH * (here.width - there.width) ** 2
 

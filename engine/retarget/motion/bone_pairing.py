@@ -432,7 +432,7 @@ def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Sk
         ways = _ways(parts, part, int(below[0]), trees)
         start, goal = unit_vectors(np.stack([turned[row] @ ways[0], ways[1]]))
         if start @ goal > np.cos(_STRAY_DIRECTION):
-            turned[row] = least_turns(start[None], goal[None])[0] @ turned[row]
+            turned[row] = least_turns(start, goal) @ turned[row]
     return nearest_rotations(turned) if len(turned) else turned
 
 
@@ -447,7 +447,7 @@ def _by_joints(ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], uprigh
         below, above = parts.below(part), parts.parents[part]
         if len(below) == 1:
             start, goal = unit_vectors(np.stack(_ways(parts, part, int(below[0]), trees)))
-            turned[parts.rows[part]] = least_turns((upright @ start)[None], goal[None])[0] @ upright
+            turned[parts.rows[part]] = least_turns(upright @ start, goal) @ upright
         elif not len(below) and above >= 0 and len(parts.below(above)) == 1:
             turned[parts.rows[part]] = turned[parts.rows[above][0]]
     return turned

@@ -48,10 +48,10 @@ def kept_bends(skeleton: Skeleton, heads: Floats, tails: Floats, turns: Floats, 
         now, new_length = _bend(after[list(ends)])
         if not length * new_length > 0 or np.linalg.norm(bend) < _LEAST * length:
             continue
-        line = unit_vectors((after[ends[2]] - after[ends[0]])[None])[0]
+        line = unit_vectors(after[ends[2]] - after[ends[0]])
         wanted = (turns[parent] + turns[bone]) @ bend
         wanted -= (wanted @ line) * line
-        direction = unit_vectors(wanted[None])[0]
+        direction = unit_vectors(wanted)
         least = _KEPT * np.linalg.norm(bend) / length * new_length
         lacking = least - now @ direction
         if 0 < lacking < _MOST * new_length:

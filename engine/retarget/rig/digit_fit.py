@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from ...mesh.closest_points import FoundPoints
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats
+from ...runtime.arrays import Floats, unit_vectors
 from .articulated_hand import Hand, HandPose, HandSolver
 from .bone_fit import BoneTransforms, skinned
 from .digit_groups import digit_groups
@@ -177,11 +177,9 @@ class _PoseSearch:
 def _hand_axes(hand: Hand) -> tuple[Floats, Floats]:
     """Direction from the wrist to the knuckles at rest, and that of the knuckles, (3,) each."""
     knuckles = hand.skeleton.heads[[chain[0] for chain in hand.group.chains]]
-    along = knuckles.mean(axis=0) - hand.skeleton.heads[hand.group.hub]
-    along /= max(float(np.linalg.norm(along)), TINY)
+    along = unit_vectors(knuckles.mean(axis=0) - hand.skeleton.heads[hand.group.hub])
     across = np.linalg.svd(knuckles - knuckles.mean(axis=0))[2][0]
-    across -= (across @ along) * along
-    return along, across / max(float(np.linalg.norm(across)), TINY)
+    return along, unit_vectors(across - (across @ along) * along)
 
 
 def _turn(degrees: Floats) -> Floats:

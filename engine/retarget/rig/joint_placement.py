@@ -174,7 +174,7 @@ def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> Floats:
     middle = source.vertex_areas @ source.vertices / source.area
     away = rig.skeleton.heads[root] - middle
     outside = np.linalg.norm(away) > _LEAST_REACH * np.linalg.norm(np.ptp(source.vertices, axis=0))
-    return unit_vectors(away[None])[0] if outside else np.zeros(3)
+    return unit_vectors(away) if outside else np.zeros(3)
 
 
 def _rooted(rig: FittedRig, source: TriangleMesh, upright: Floats, bone: int, anchor: int) -> Floats:

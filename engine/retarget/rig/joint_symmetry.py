@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from ...mesh.closest_points import ClosestPoints
 from ...mesh.mirror_planes import MirrorPlane
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, evenly
+from ...runtime.arrays import Floats, Ints, evenly, unit_vectors
 from .skeleton import Skeleton
 
 _SAME = 1e-3
@@ -64,10 +64,8 @@ def mirrored_joints(skeleton: Skeleton, target: TriangleMesh, placed: Joints, sp
     other = plane.reflected_directions(across[partners])
     alike = (across * other).sum(axis=1)
     across = np.where(np.abs(alike)[:, None] > np.sqrt(0.5), across + np.sign(alike)[:, None] * other, across)
-    along = tails - heads
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), TINY)
-    across -= (across * along).sum(axis=1, keepdims=True) * along
-    return heads, tails, across / np.linalg.norm(across, axis=1, keepdims=True)
+    along = unit_vectors(tails - heads)
+    return heads, tails, unit_vectors(across - (across * along).sum(axis=1, keepdims=True) * along)
 
 
 def _partners(skeleton: Skeleton) -> Ints | None:
@@ -97,8 +95,8 @@ def _plane(heads: Floats, tails: Floats, partners: Ints, target: TriangleMesh, s
         return float(np.sqrt(search.nearest(plane.reflected(points)).squared_distances).mean()) / extent
 
     found = missed(between)
-    axes = space[:3, :3] / np.maximum(np.linalg.norm(space[:3, :3], axis=0), TINY)
-    own = MirrorPlane(space[:3, 3], axes[:, np.abs(axes.T @ between.axis).argmax()])
+    axes = unit_vectors(space[:3, :3].T)
+    own = MirrorPlane(space[:3, 3], axes[np.abs(axes @ between.axis).argmax()])
     turned, moved = abs(own.axis @ between.axis), abs((between.middle - own.middle) @ own.axis)
     if turned > np.cos(_OWN_ANGLE) and moved < _OWN_PLACE * extent and missed(own) < max(_AS_GOOD * found, _SAME):
         return own
