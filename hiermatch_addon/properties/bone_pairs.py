@@ -206,10 +206,7 @@ def pairing_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.typ
             turns.append(changes.turned(row.turn))
             places.append(changes.placed(row.place))
             continue
-        start, goal = (
-            upright @ (trees[0].tails[one] - trees[0].heads[one]),
-            trees[1].tails[other] - trees[1].heads[other],
-        )
+        start, goal = upright @ trees[0].axes[one], trees[1].axes[other]
         swing = Matrix.Identity(3)
         if np.linalg.norm(start) > 0 and np.linalg.norm(goal) > 0:
             swing = Vector(start.tolist()).rotation_difference(Vector(goal.tolist())).to_matrix()

@@ -227,8 +227,7 @@ def _ending(tree: Skeleton, mesh: TriangleMesh, weights: csr_array, turn: Floats
 def nearest_bones(mesh: TriangleMesh, skeleton: Skeleton) -> csr_array:
     """Let each bone move the vertices (n) that are nearest to it: weights (n, b) where there are none."""
     steps = np.linspace(0.05, 0.95, 12)
-    points = skeleton.heads[:, None] + steps[:, None] * (skeleton.tails - skeleton.heads)[:, None]
-    _, found = cKDTree(points.reshape(-1, 3)).query(mesh.vertices)
+    _, found = cKDTree(skeleton.points_along(steps).reshape(-1, 3)).query(mesh.vertices)
     rows = np.arange(mesh.vertex_count)
     return csr_array((np.ones(len(rows)), (rows, found // len(steps))), shape=(len(rows), len(skeleton)))
 
@@ -266,7 +265,7 @@ def _compared(
     squares = [areas @ each.power(2) for each in subtrees]
     whole = _even(_part(shared, squares[1][:, None] + squares[0] - shared), mirrors)
     extent = np.ptp(target.vertices, axis=0).max()
-    lengths = [np.linalg.norm(tree.tails - tree.heads, axis=1) for tree in trees]
+    lengths = [np.linalg.norm(tree.axes, axis=1) for tree in trees]
     reach = np.maximum((lengths[1][:, None] + lengths[0]) / 2, 0.01 * extent)
     apart = np.linalg.norm(trees[1].heads[:, None] - trees[0].heads, axis=2)
     place = _even(np.exp(-((apart / reach) ** 2)), mirrors)

@@ -251,7 +251,7 @@ class _Rigs:
         lines += [(point.source, point.place) for point in held]
         for number, bone in enumerate(joints.bones):
             if bone not in [owner for owner, _ in lines]:
-                way = self.ratio * rests[number] @ (self.source.tails[bone] - self.source.heads[bone])
+                way = self.ratio * rests[number] @ self.source.axes[bone]
                 lines.append((bone, joints.places[number] + way))
         lines = [line for line in lines if line[0] in rows]
         starts = np.array([joints.places[joints.bones.index(bone)] for bone, _ in lines])

@@ -60,7 +60,7 @@ class Motion:
     @property
     def tails(self) -> Floats:
         """Where the tails of the bones are, (f, b, 3)."""
-        return self.heads + np.einsum("fbij,bj->fbi", self.turns, self.skeleton.tails - self.skeleton.heads)
+        return self.heads + np.einsum("fbij,bj->fbi", self.turns, self.skeleton.axes)
 
     @classmethod
     def joined(cls, parts: Sequence[Motion]) -> Motion:

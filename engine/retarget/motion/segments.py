@@ -129,8 +129,8 @@ class Segments:
                 continue
             first, last = self.targets[part][0], self.targets[above][-1]
             row = self.rows[part][sources[self.rows[part]] == self.sources[part][0]][0]
-            lengths = [np.linalg.norm(bones.tails[bone] - bones.heads[bone]) for bone in (first, last)]
-            if np.linalg.norm(places[row] - bones.heads[first]) > _ELSEWHERE * min(lengths):
+            lengths = np.linalg.norm(bones.axes[[first, last]], axis=1)
+            if np.linalg.norm(places[row] - bones.heads[first]) > _ELSEWHERE * lengths.min():
                 joined[joined == joined[part]] = joined[above]
         chains = []
         for number in np.unique(joined):

@@ -170,7 +170,7 @@ class HandSolver:
         digits = hand.group.bones[1:]
         self._own = np.array([place[int(bone)] for bone in digits])
         self._above = np.array([place[int(bone)] for bone in hand.skeleton.parents[digits]])
-        self._axes = unit_vectors(hand.skeleton.tails[digits] - hand.skeleton.heads[digits])
+        self._axes = unit_vectors(hand.skeleton.axes[digits])
         self._ties = np.zeros((4 * count, 4 * count))
         for bone in hand.group.bones:
             child, parent = place[int(bone)], place[int(hand.skeleton.parents[bone])]

@@ -37,7 +37,7 @@ def kept_bends(skeleton: Skeleton, heads: Floats, tails: Floats, turns: Floats, 
     heads, tails : (b, 3) array of float
         With joints in the middle of a limb moved where necessary.
     """
-    before, after = np.concatenate([skeleton.heads, skeleton.tails]), np.concatenate([heads, tails])
+    before, after = skeleton.joints, np.concatenate([heads, tails])
     count = len(skeleton)
     for bone in skeleton.order:
         parent = skeleton.parents[bone]

@@ -107,7 +107,7 @@ def fit_bones(
     leaders = np.where(place[:-1] >= 0, place[:-1], above)
     child = np.flatnonzero(above[active] < len(active))
     joints = _Joints(child, above[active[child]], skeleton.heads[active[child]])
-    axes = skeleton.tails[active] - skeleton.heads[active]
+    axes = skeleton.axes[active]
     system = _System(vertices, positions, areas, csr_array(weights[:, active]), joints, axes=axes)
     linear, translations = system.solved()
     whole = nearest_similarity(vertices, positions, areas)

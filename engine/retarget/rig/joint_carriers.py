@@ -122,13 +122,12 @@ def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:
 
 def nearest_on_bones(skeleton: Skeleton, point: Floats) -> Floats:
     """Find the point of each bone that is nearest to a point, (b, 3)."""
-    axes = skeleton.tails - skeleton.heads
-    return skeleton.heads + shares_along(point, skeleton.heads, axes)[:, None] * axes
+    return skeleton.heads + shares_along(point, skeleton.heads, skeleton.axes)[:, None] * skeleton.axes
 
 
 def joint_places(skeleton: Skeleton) -> Ints:
     """Give each place of heads and then tails a number, (2 b,)."""
-    joints = np.concatenate([skeleton.heads, skeleton.tails])
+    joints = skeleton.joints
     extent = float(np.linalg.norm(np.ptp(joints, axis=0)))
     pairs = cKDTree(joints).query_pairs(_SAME_PLACE * extent, output_type="ndarray")
     # The two ends of a very short bone are not one place.

@@ -90,8 +90,7 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
         raise RigError(f"{len(skeleton)} bones need one normal each, but got an array of the shape {normals.shape}.")
     carriers = carriers_of(rig, source)
     count = len(carriers.of_places)
-    joints = np.concatenate([skeleton.heads, skeleton.tails])
-    points = group_means(carriers.places, joints, count)  # (k, 3)
+    points = group_means(carriers.places, skeleton.joints, count)  # (k, 3)
     placed = np.zeros((count, 3))
     for place, bone in np.argwhere(carriers.of_places > 0):
         placed[place] += carriers.of_places[place, bone] * _carried(rig, bone, points[place])
@@ -102,7 +101,7 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
         placed[carriers.places[bone]] = _rooted(rig, source, upright, bone, carriers.anchors[bone])
     heads, tails = np.split(placed[carriers.places], 2)
     scales = np.exp(carriers.of_turns @ np.log(np.maximum(rig.scales, TINY)))
-    axes = skeleton.tails - skeleton.heads
+    axes = skeleton.axes
     free = np.flatnonzero(carriers.free & carriers.moving)
     turns[free] = _aimed(skeleton, heads, turns, moved_areas(rig, source))[free]
     rigid = np.einsum("bij,bj->bi", turns, axes) * scales[:, None]
@@ -111,7 +110,7 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
     tails[free] = heads[free] + unit_vectors(rigid[free]) * lengths[free, None]
     heads, tails = with_lengths(skeleton, heads, tails, rigid, carriers.places)
     rotations = swung(turns, axes, tails - heads)
-    across = np.einsum("bij,bj->bi", rotations, across_axes(normals, skeleton.tails - skeleton.heads))
+    across = np.einsum("bij,bj->bi", rotations, across_axes(normals, axes))
     return PlacedJoints(heads, tails, across, rotations)
 
 

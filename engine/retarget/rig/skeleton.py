@@ -58,6 +58,20 @@ class Skeleton:
     def __repr__(self) -> str:
         return f"<Skeleton: {len(self.heads)} bones>"
 
+    @property
+    def axes(self) -> Floats:
+        """The way from head to tail of each bone, (b, 3)."""
+        return self.tails - self.heads
+
+    @property
+    def joints(self) -> Floats:
+        """All heads, and then all tails, (2 b, 3)."""
+        return np.concatenate([self.heads, self.tails])
+
+    def points_along(self, parts: Floats) -> Floats:
+        """Points at some parts of the way from head to tail, (s,), of each bone: (b, s, 3)."""
+        return self.heads[:, None] + parts[:, None] * self.axes[:, None]
+
     @cached_property
     def order(self) -> Ints:
         """All bones, parents before their children, (b,)."""

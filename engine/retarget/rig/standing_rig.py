@@ -112,9 +112,8 @@ def carry_standing_rig_steps(
     yield Progress(0.0, "Carrying joints")
     field = _Field.of(source, target, source_to_target, target_to_source)
     places = joint_places(skeleton)
-    joints = np.concatenate([skeleton.heads, skeleton.tails])
     counts = np.bincount(places)
-    points = group_means(places, joints, len(counts))
+    points = group_means(places, skeleton.joints, len(counts))
     wanted = np.concatenate([points, (skeleton.heads + skeleton.tails) / 2])
     found = []
     for part in slices(len(wanted), _AT_ONCE):
@@ -126,7 +125,7 @@ def carry_standing_rig_steps(
     yield Progress(0.9, "Carrying joints")
     outside = _roots_outside(skeleton, source)
     turns[outside] = field.upright(frames)
-    axes = skeleton.tails - skeleton.heads
+    axes = skeleton.axes
     rigid = np.einsum("bij,bj->bi", turns, axes) * scales[:, None]
     alone = marked(outside, len(axes)) & (counts[np.split(places, 2)[1]] == 1)
     tails = np.where(alone[:, None], heads + rigid, tails)
@@ -144,8 +143,8 @@ carry_standing_rig = at_once(carry_standing_rig_steps)
 
 def standing_share(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools) -> float:
     """Tell what part of deforming bones (b,) lies inside of a body: near one if they stand in it, else near zero."""
-    lengths = np.repeat(np.linalg.norm(skeleton.tails - skeleton.heads, axis=1)[deforming], len(_STEPS))
-    inside = ~_outside(_on_bones(skeleton, deforming), mesh)
+    lengths = np.repeat(np.linalg.norm(skeleton.axes, axis=1)[deforming], len(_STEPS))
+    inside = ~_outside(skeleton.points_along(_STEPS)[deforming].reshape(-1, 3), mesh)
     return float(lengths @ inside / max(lengths.sum(), TINY))
 
 
@@ -169,7 +168,7 @@ def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Flo
         The bones: first as high as the body and in its middle, then moved and scaled until as little as may be lies
         outside.
     """
-    points = _on_bones(skeleton, deforming)
+    points = skeleton.points_along(_STEPS)[deforming].reshape(-1, 3)
     heights = [np.array([(each @ up).min(), (each @ up).max()]) for each in (points, mesh.vertices)]
     whole = scale = float(np.diff(heights[1])[0] / max(np.diff(heights[0])[0], TINY))
     middles = [(each.min(axis=0) + each.max(axis=0)) / 2 for each in (points, mesh.vertices)]
@@ -185,12 +184,6 @@ def moved_into(skeleton: Skeleton, mesh: TriangleMesh, deforming: Bools, up: Flo
         scale = float(np.clip(best, whole / _MOST_SCALED, whole * _MOST_SCALED))
         way = goals.mean(axis=0) - scale * points.mean(axis=0)
     return Skeleton(skeleton.parents, *(scale * ends + way for ends in (skeleton.heads, skeleton.tails)))
-
-
-def _on_bones(skeleton: Skeleton, chosen: Bools) -> Floats:
-    """Points on each of k bones, some after each other, (5 k, 3)."""
-    axes = (skeleton.tails - skeleton.heads)[chosen]
-    return (skeleton.heads[chosen, None] + _STEPS[:, None] * axes[:, None]).reshape(-1, 3)
 
 
 def _outside(points: Floats, mesh: TriangleMesh) -> Bools:

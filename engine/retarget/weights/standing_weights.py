@@ -77,7 +77,7 @@ def _distances(mesh: TriangleMesh, skeleton: Skeleton, bones: Ints) -> Floats:
     """Distances of vertices from bones, (n, k); more where the surface faces away from the bone."""
     result = np.empty((mesh.vertex_count, len(bones)))
     for column, bone in enumerate(bones):
-        head, axis = skeleton.heads[bone], skeleton.tails[bone] - skeleton.heads[bone]
+        head, axis = skeleton.heads[bone], skeleton.axes[bone]
         away = mesh.vertices - head - shares_along(mesh.vertices, head, axis)[:, None] * axis
         far = np.linalg.norm(away, axis=1)
         facing = (away * mesh.vertex_normals).sum(axis=1) / np.maximum(far, TINY)

@@ -69,7 +69,7 @@ def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[
     """Make the channels of an armature's bones of its motion, in the rotation modes that the bones have."""
     local = local_poses(found.motion, armature)
     tree = own_skeleton(armature)
-    extent = float(np.ptp(np.concatenate([tree.heads, tree.tails]), axis=0).max())
+    extent = float(np.ptp(tree.joints, axis=0).max())
     channels = []
     for number, bone in enumerate(cast("bpy.types.Pose", armature.pose).bones):
         if found.moved[number]:

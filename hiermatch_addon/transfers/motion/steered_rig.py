@@ -81,7 +81,7 @@ class SteeredRig:
         pose = cast("bpy.types.Pose", armature.pose).bones
         locked = {bone.name for bone in pose if any(bone.lock_rotation)}
         tree = own_skeleton(armature)
-        extent = float(np.ptp(np.concatenate([tree.heads, tree.tails]), axis=0).max())
+        extent = float(np.ptp(tree.joints, axis=0).max())
         made = [each for each in plain if each.bone in self.controls.lost and each.bone not in locked]
         for name, (control, bases) in self._by_control().items():
             mode = pose[control].rotation_mode

@@ -23,6 +23,14 @@ def test_no_bones_are_a_skeleton():
     assert len(skeleton([])) == 0
 
 
+def test_points_on_bones_lie_between_their_ends():
+    heads, tails = np.random.default_rng(0).random((2, 3, 3))
+    bones = Skeleton(np.array([-1, 0, 1]), heads, tails)
+    points = bones.points_along(np.array([0, 0.25, 1]))
+    np.testing.assert_allclose(points, np.stack([heads, heads + bones.axes / 4, tails], axis=1))
+    np.testing.assert_array_equal(bones.joints, [*heads, *tails])
+
+
 @pytest.mark.parametrize(
     ("parents", "heads", "message"),
     [
