@@ -98,6 +98,17 @@ def shares_along(points: Floats, starts: Floats, ways: Floats) -> Floats:
     return (((points - starts) * ways).sum(axis=-1) / squares).clip(0, 1)
 
 
+def lengths_along(points: Floats) -> Floats:
+    """Tell how far along a line each of its points (k, d) lies, from 0 at the first on, (k,)."""
+    return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+
+
+def eased(shares: Floats) -> Floats:
+    """Let shares from 0 to 1 begin and end smoothly: less than 0 is 0, and more than 1 is 1."""
+    shares = shares.clip(0, 1)
+    return shares * shares * (3 - 2 * shares)
+
+
 def spread_rows(rows: Floats, first: int, most: int, least: float = 0.0) -> Ints:
     """Pick rows of (n, d), from the first on each the farthest from those before, until none is far any more: (k,)."""
     chosen = [first]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.procrustes import least_turns
-from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
+from ...runtime.arrays import TINY, Bools, Floats, Ints, lengths_along, unit_vectors
 from ..rig.skeleton import Skeleton
 
 _ANGLE = np.radians(30.0)
@@ -142,8 +142,8 @@ def _limbs(tree: Skeleton, moving: Bools, mirrors: Ints) -> list[_Limb]:
         while above[row[-1]] >= 0 and limbs[above[row[-1]]] and len(below[above[row[-1]]]) == 1:
             row.append(int(above[row[-1]]))
         bones = np.array(row[::-1])
-        steps = np.diff(np.concatenate([tree.heads[bones], tree.tails[last, None]]), axis=0)
-        lengths = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
+        joints = np.concatenate([tree.heads[bones], tree.tails[last, None]])
+        steps, lengths = np.diff(joints, axis=0), lengths_along(joints)
         if len(bones) > 1 and lengths[-1] > TINY:
             steps[-1] = steps[-2]  # what the last bone moves does not say well where it points
             apart = np.linalg.norm(tree.heads[bones] - tree.heads[mirrors[bones]], axis=1)

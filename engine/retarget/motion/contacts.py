@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import binary_closing, binary_opening
 
-from ...runtime.arrays import TINY, Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats, eased
 
 _LOW = 0.08
 """How far above its lowest place a point may be that stands, in units of the leg."""
@@ -132,8 +132,6 @@ def _faded(values: Floats, held: Bools, span: int) -> Floats:
         places[np.maximum(np.searchsorted(places, frames, "right") - 1, 0)],
         places[np.minimum(np.searchsorted(places, frames), len(places) - 1)],
     ):
-        away = np.abs(frames - sides) / (span + 1)
-        right_side = ~held & (away < 1)
-        share = 1 - away * away * (3 - 2 * away)
-        result[right_side] += (share[:, None] * values[sides])[right_side]
+        share = ~held * (1 - eased(np.abs(frames - sides) / (span + 1)))
+        result += share[:, None] * values[sides]
     return result

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...runtime.arrays import Floats, shares_along
+from ...runtime.arrays import Floats, eased, shares_along
 
 _TOUCHING, _APART = 0.25, 0.45
 """Up to what distance from the middle of another part a hand touches it, and from where on it is free, in units of the
@@ -68,5 +68,5 @@ def hand_shifts(palms: Floats, target_palms: Floats, lines: Sequence[BodyLine], 
     nearest = far.min(axis=0)
     weights = (np.maximum(nearest, 1e-6) / np.maximum(far, 1e-6)) ** _SHARPNESS
     blended: Floats = np.einsum("lf,lfi->fi", weights / weights.sum(axis=0), np.array(shifts))
-    free = ((nearest - _TOUCHING) / (_APART - _TOUCHING)).clip(0, 1)
-    return (1 - free * free * (3 - 2 * free))[:, None] * blended
+    free = eased((nearest - _TOUCHING) / (_APART - _TOUCHING))
+    return (1 - free)[:, None] * blended

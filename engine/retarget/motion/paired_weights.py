@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array
 
-from ...runtime.arrays import TINY, Floats, Ints, shares_along
+from ...runtime.arrays import TINY, Floats, Ints, eased, lengths_along, shares_along
 from ...runtime.errors import RigError
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
@@ -100,20 +100,18 @@ def _owners(segments: Segments, tree: Skeleton) -> Ints:
 def _along(points: Floats, chain: Ints, bones: Skeleton) -> Floats:
     """Share points (n, 3) out along a chain of bones (c,): they go over smoothly from one to the next, (n, c)."""
     joints = np.concatenate([bones.heads[chain], bones.tails[chain[-1]][None]])
-    steps = np.diff(joints, axis=0)
-    lengths = np.linalg.norm(steps, axis=1)
+    steps, starts = np.diff(joints, axis=0), lengths_along(joints)
+    lengths = np.diff(starts)
     shares = shares_along(points[:, None], joints[:-1], steps)
     nearest = joints[:-1] + shares[:, :, None] * steps
     closest = np.linalg.norm(points[:, None] - nearest, axis=2).argmin(axis=1)
     # The place along the whole chain, measured from its start; beyond its ends nothing goes over.
-    starts = np.append(0, np.cumsum(lengths))
     rows = np.arange(len(points))
     place = starts[closest] + shares[rows, closest] * lengths[closest]
     result = np.ones((len(points), len(chain)))
     for joint in range(1, len(chain)):
         width = max(_WIDTH * min(lengths[joint - 1], lengths[joint]), TINY)
-        gone = ((place - starts[joint]) / width + 0.5).clip(0, 1)
-        gone = gone * gone * (3 - 2 * gone)
+        gone = eased((place - starts[joint]) / width + 0.5)
         result[:, :joint] *= (1 - gone)[:, None]
         result[:, joint:] *= gone[:, None]
     return result / result.sum(axis=1, keepdims=True)

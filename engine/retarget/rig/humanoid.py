@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...runtime.arrays import TINY, Bools, Floats
+from ...runtime.arrays import TINY, Bools, Floats, lengths_along
 from ...runtime.errors import RigError
 from .skeleton import Skeleton
 
@@ -181,8 +181,7 @@ class _Tree:
 
     def reach(self, way: Sequence[int]) -> float:
         """Tell how long a chain is."""
-        joints = np.concatenate([self.bones.heads[list(way)], self.bones.tails[way[-1:]]])
-        return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
+        return float(lengths_along(np.concatenate([self.bones.heads[list(way)], self.bones.tails[way[-1:]]]))[-1])
 
     def _longest(self, bone: int, child: int, among: list[int]) -> list[int]:
         ways = [self.way(bone, tip) for tip in self.tips(child) if tip in among]
@@ -190,19 +189,14 @@ class _Tree:
 
     def middle(self, way: Sequence[int], end: int) -> int:
         """Find the place in a chain of the joint that is nearest to its middle; `end` begins where the chain ends."""
-        lengths = self._lengths(way, end)
+        lengths = lengths_along(self.bones.heads[[*way, end]])
         return 1 + int(np.abs(lengths[1:-1] - lengths[-1] / 2).argmin())
 
     def balance(self, way: Sequence[int], end: int) -> float:
         """Return how long the shorter half of a chain is in units of the longer one, parted at its `middle`."""
-        lengths = self._lengths(way, end)
+        lengths = lengths_along(self.bones.heads[[*way, end]])
         halves = np.diff(lengths[[0, self.middle(way, end), -1]])
         return float(halves.min() / np.maximum(halves.max(), TINY))
-
-    def _lengths(self, way: Sequence[int], end: int) -> Floats:
-        """Return how far each joint is along a chain."""
-        joints = self.bones.heads[[*way, end]]
-        return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(joints, axis=0), axis=1))])
 
 
 def _check_upright(tree: _Tree, legs: list[list[int]], arms: list[list[int]]) -> None:

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from ...mesh.connectivity.edge_chains import edge_chains, way_to_root
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, ranges, shares_along
+from ...runtime.arrays import TINY, Floats, Ints, lengths_along, ranges, shares_along
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 
@@ -188,7 +188,7 @@ class _Tracer:
 
         Those are the best of each piece, those where the target has a vertex in the same place, and bends.
         """
-        along = np.append(0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+        along = lengths_along(points)
         pieces = max(round(float(along[-1]) / (_PIECE * step)), 1)
         if (points[0] == points[-1]).all():  # a loop needs three, or it would collapse
             pieces = max(pieces, 3)

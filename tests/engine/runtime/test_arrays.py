@@ -6,11 +6,13 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from engine.runtime.arrays import (
+    eased,
     evenly,
     group_largest,
     group_means,
     group_smallest,
     group_sums,
+    lengths_along,
     marked,
     numbered,
     ranges,
@@ -113,6 +115,16 @@ def test_rows_are_picked_each_the_farthest_from_those_before():
     assert spread_rows(rows, 0, 3).tolist() == [0, 2, 4]
     assert spread_rows(rows, 0, 5).tolist() == [0, 2, 4, 1]  # what lies on another row is never picked
     assert spread_rows(rows, 1, 5, least=5.0).tolist() == [1, 2]
+
+
+def test_lengths_along_a_line_are_those_of_its_parts_so_far():
+    assert lengths_along(np.array([[0.0, 0], [3, 4], [3, 4], [3, 10]])).tolist() == [0, 5, 5, 11]
+    assert lengths_along(np.zeros((1, 3))).tolist() == [0]
+
+
+def test_eased_shares_keep_their_ends_and_their_middle_and_stand_still_at_the_ends():
+    assert eased(np.array([-1, 0, 0.5, 1, 2])).tolist() == [0, 0, 0.5, 1, 1]
+    np.testing.assert_allclose(eased(np.array([1e-4, 1 - 1e-4])), [0, 1], atol=1e-7)
 
 
 def test_some_of_many_are_chosen_evenly_and_all_of_few():
