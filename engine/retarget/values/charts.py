@@ -13,7 +13,7 @@ from ...mesh.connectivity.components import joined_components, triangle_componen
 from ...mesh.connectivity.halfedges import following, triangle_slots, twins_of
 from ...mesh.polygons import Polygons
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints, marked
+from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.errors import MeshError
 
 
@@ -51,18 +51,10 @@ class CornerSheets:
         return int(self.labels.max()) + 1
 
     @cached_property
-    def border_vertices(self) -> Bools:
-        """Which vertices of the cut surface are at a border."""
+    def border_edges(self) -> Ints:
+        """Vertices of the cut surface where the half-edges at borders begin and end, (b, 2)."""
         triangles, borders = self.surface.triangles, np.flatnonzero(self.borders)
-        ends = np.concatenate([triangle_slots(triangles, borders, end) for end in (0, 1)])
-        return marked(ends, self.surface.vertex_count)
-
-    @cached_property
-    def border_ends(self) -> tuple[Floats, Floats]:
-        """Where the half-edges at borders begin and end, (b, 3) each."""
-        triangles, borders = self.surface.triangles, np.flatnonzero(self.borders)
-        first, second = (self.surface.vertices[triangle_slots(triangles, borders, end)] for end in (0, 1))
-        return first, second
+        return np.stack([triangle_slots(triangles, borders, end) for end in (0, 1)], axis=1)
 
     def is_at_border(self, triangles: Ints, barycentric: Floats) -> Bools:
         """Say which places, triangles (k,) and coordinates (k, 3), are on a border."""
@@ -70,7 +62,7 @@ class CornerSheets:
         # Half-edge i is opposite to corner i + 2.
         on_side = (absent[:, [2, 0, 1]] & self.borders.reshape(-1, 3)[triangles]).any(axis=1)
         corner = self.surface.triangles[triangles, barycentric.argmax(axis=1)]
-        return on_side | ((absent.sum(axis=1) >= 2) & self.border_vertices[corner])
+        return on_side | ((absent.sum(axis=1) >= 2) & np.isin(corner, self.border_edges))
 
     def at(self, triangles: Ints, barycentric: Floats) -> Floats:
         """Interpolate the values at places, (k, d)."""

@@ -212,9 +212,7 @@ class FacePlaces:
 
     def _is_clear(self, sheets: CornerSheets) -> Bools:
         """Say of each face whether no border of a sheet is within its reach."""
-        first, second = sheets.border_ends
-        if not len(first):
-            return np.ones(len(self.centres), bool)
-        half = float(np.linalg.norm(second - first, axis=1).max()) / 2
-        away = cKDTree((first + second) / 2).query(self.centres)[0]
+        ends = sheets.surface.vertices[sheets.border_edges]  # (b, 2, 3)
+        half = float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).max(initial=0.0)) / 2
+        away = cKDTree(ends.mean(axis=1)).query(self.centres)[0]
         return away - half > self.reaches
