@@ -37,10 +37,11 @@ from .retarget.rig.rest_pose import RestPose, at_rest, is_posed, length_ratio, r
 from .retarget.rig.rig_fit import fit_rig, fit_rig_steps
 from .retarget.rig.skeleton import Skeleton
 from .retarget.rig.standing_rig import carry_standing_rig, carry_standing_rig_steps, moved_into, standing_share
-from .retarget.values.attribute_transfer import CarriedValues, Crossing, Domain, carry_values_steps
+from .retarget.values.attribute_transfer import Crossing, Domain, carry_values_steps
 from .retarget.values.closings import closings_kept_steps
 from .retarget.values.corner_transfer import carry_normals, turned_normals
 from .retarget.values.deformation_gradients import LocalFrames, bone_frames, evened_frames, surface_frames
+from .retarget.values.edge_tracing import CarriedValues
 from .retarget.values.face_correspondence import FacePlaces
 from .retarget.values.face_transfer import carry_face_values
 from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps

@@ -17,7 +17,7 @@ from ...runtime.background import can_go_beside
 from ...runtime.errors import MatchError
 from ...runtime.progress import Steps
 from .corner_transfer import carry_corner_values, carry_point_marks, carry_point_values
-from .edge_tracing import nearest_edge_values, trace_edges_steps
+from .edge_tracing import CarriedValues, nearest_edge_values, trace_edges_steps
 from .face_correspondence import FacePlaces
 from .face_transfer import carry_face_values
 
@@ -58,25 +58,6 @@ class Crossing:
     def places(self) -> FacePlaces:
         """Where the faces of the target lie on the source."""
         return FacePlaces(self.source, self.target_faces, self.target_to_source)
-
-
-@dataclass(frozen=True, eq=False)
-class CarriedValues:
-    """Values on the target.
-
-    Attributes
-    ----------
-    values : (k, ...) array
-        One for each point, edge, face or corner, of the type of those on the source.
-    lost : int
-        How many lines of marked edges run where the target has nothing.
-    """
-
-    values: NDArray[Any]
-    lost: int = 0
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {self.values.shape}, {self.lost} lost>"
 
 
 @can_go_beside

@@ -44,20 +44,22 @@ _TRIED = 8
 
 
 @dataclass(frozen=True, eq=False)
-class TracedEdges:
-    """Edges of the target that follow marked edges of the source.
+class CarriedValues:
+    """Values on the target.
 
     Attributes
     ----------
-    values : (e,) array of float
-        For each edge of the target the value of the marked edge that it follows, the largest if several; zero for all
-        others.
+    values : (k, ...) array
+        One for each point, edge, face or corner, of the type of those on the source.
     lost : int
-        How many chains of marked edges run where the target has nothing: inside a mouth that it lacks, say.
+        How many lines of marked edges run where the target has nothing: inside a mouth that it lacks, say.
     """
 
-    values: Floats
-    lost: int
+    values: NDArray[Any]
+    lost: int = 0
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self.values.shape}, {self.lost} lost>"
 
 
 def trace_edges_steps(
@@ -68,7 +70,7 @@ def trace_edges_steps(
     *,
     source_to_target: SurfaceMap,
     target_to_source: SurfaceMap,
-) -> Steps[TracedEdges]:
+) -> Steps[CarriedValues]:
     """Trace marked edges of the source along the edges of the target.
 
     The marked edges are joined to chains, which end at junctions.  Vertices along a chain, some edges of the target
@@ -96,8 +98,9 @@ def trace_edges_steps(
 
     Returns
     -------
-    TracedEdges
-        The edges of the target that follow a marked edge.
+    CarriedValues
+        For each edge of the target the value of the marked edge that it follows, the largest if several; zero for all
+        others.
 
     Raises
     ------
@@ -106,10 +109,9 @@ def trace_edges_steps(
     """
     values = np.asarray(values, np.float64)
     _check(source, edges, source_to_target, target_to_source)
-    traced = np.zeros(len(edges))
+    traced, lost = np.zeros(len(edges)), 0
     if not len(marked) or not len(edges):
-        return TracedEdges(traced, 0)
-    lost = 0
+        return CarriedValues(traced)
     chains = edge_chains(marked)
     tracer = _Tracer(source, edges, source_to_target, target_to_source)
     for number, (vertices, numbers) in enumerate(chains):
@@ -119,7 +121,7 @@ def trace_edges_steps(
             lost += 1
         else:
             np.maximum.at(traced, *found)
-    return TracedEdges(traced, lost)
+    return CarriedValues(traced, lost)
 
 
 def nearest_edge_values(
