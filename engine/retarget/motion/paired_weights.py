@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
 
 from ...runtime.arrays import TINY, Floats, Ints, eased, lengths_along, shares_along
 from ...runtime.errors import RigError
 from ..rig.skeleton import Skeleton
-from ..weights.skin_weights import row_sums
+from ..weights.skin_weights import row_shares, row_sums
 from .bone_pairing import BonePairing
 from .segments import Segments
 
@@ -23,8 +23,6 @@ def paired_weights(
     pairing: BonePairing,
     source_bones: Skeleton,
     bones: Skeleton,
-    *,
-    sums: bool = True,
 ) -> csr_array:
     """Hand the weights of a source's bones to those of a target's that stand for them.
 
@@ -42,13 +40,11 @@ def paired_weights(
         The pairs.
     source_bones, bones : Skeleton
         The bones, a and b, either in its own space.
-    sums : bool
-        Whether vertices keep the sum of their weights; else what has no partner at all is left out.
 
     Returns
     -------
     (n, b) csr_array of float
-        Weights of the target's bones.
+        Weights of the target's bones; vertices keep the sum of their weights.
 
     Raises
     ------
@@ -75,11 +71,7 @@ def paired_weights(
     rows, places, values = (np.concatenate(each) for each in zip(*parts, strict=True))
     handed = csr_array((values, (rows, places)), shape=(len(vertices), len(bones)))
     handed.eliminate_zeros()
-    if sums:
-        totals = row_sums(handed)
-        factors = np.divide(row_sums(weights), totals, out=np.zeros_like(totals), where=totals > 0)
-        handed.data *= np.repeat(factors, np.diff(handed.indptr))
-    return handed
+    return csr_array(diags_array(row_sums(weights)) @ row_shares(handed))
 
 
 def _owners(segments: Segments, tree: Skeleton) -> Ints:

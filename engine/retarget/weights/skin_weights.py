@@ -7,7 +7,6 @@ Some columns may be locked: they keep what they have, and the others share what 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.sparse import csr_array, diags_array, vstack
 
 from ...mesh.surface_map import SurfaceMap
@@ -49,7 +48,7 @@ def carried(weights: csr_array, surface_map: SurfaceMap) -> csr_array:
 
 
 def mixed(
-    before: csr_array, new: csr_array, factor: ArrayLike = 1.0, *, add: bool = False, locked: Bools | None = None
+    before: csr_array, new: csr_array, factor: float = 1.0, *, add: bool = False, locked: Bools | None = None
 ) -> csr_array:
     """Mix new weights into those that were there.
 
@@ -57,8 +56,8 @@ def mixed(
     ----------
     before, new : (m, g) csr_array of float
         The weights.
-    factor : float or (m,) array of float
-        How much the new ones count, 0 to 1, everywhere or at each vertex.
+    factor : float
+        How much the new ones count, 0 to 1.
     add : bool
         Whether they are added to those that were there, up to 1, and do not replace them.
     locked : (g,) array of bool, optional
@@ -76,17 +75,15 @@ def mixed(
     """
     if before.shape != new.shape:
         raise RigError(f"Weights of the shapes {before.shape} and {new.shape} cannot be mixed.")
-    share = np.broadcast_to(np.asarray(factor, np.float64), before.shape[:1])
-    if not ((share >= 0) & (share <= 1)).all():
+    if not 0 <= factor <= 1:
         raise RigError("How much new weights count should be a number from 0 to 1.")
     free = _free(locked, before.shape[1])
-    added = diags_array(share) @ new @ diags_array(free.astype(float))
+    added = new @ diags_array(factor * free)
     if add:
         mixture = csr_array(before + added)
         mixture.data = np.minimum(mixture.data, 1)
         return _clean(mixture)
-    faded = diags_array(1 - share) @ before @ diags_array(free.astype(float))
-    return _clean(csr_array(faded + added + before @ diags_array((~free).astype(float))))
+    return _clean(csr_array(before @ diags_array(1 - factor * free) + added))
 
 
 def limited(weights: csr_array, count: int, *, locked: Bools | None = None) -> csr_array:

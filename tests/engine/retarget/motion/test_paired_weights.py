@@ -9,10 +9,10 @@ from engine import BonePairing, RigError, paired_weights, row_sums
 from tests.people import coarse_rig, fine_rig, renamed
 
 
-def handed(someone, paired, rig, **options):
+def handed(someone, paired, rig):
     pairing = paired(someone, rig)
     trees = someone.rig.skeleton, rig.skeleton
-    return paired_weights(someone.rig.weights, someone.mesh.vertices, pairing, *trees, **options)
+    return paired_weights(someone.rig.weights, someone.mesh.vertices, pairing, *trees)
 
 
 def test_of_a_rig_with_other_names_only_the_columns_move(someone, paired):

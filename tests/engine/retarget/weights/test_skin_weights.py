@@ -131,7 +131,6 @@ def test_mixing():
     np.testing.assert_allclose(mixed(before, new).toarray(), new.toarray())
     np.testing.assert_allclose(mixed(before, new, 0).toarray(), before.toarray())
     np.testing.assert_allclose(mixed(before, new, 0.25).toarray(), [[0.75, 0.25], [0.5, 0.5]])
-    np.testing.assert_allclose(mixed(before, new, [0, 1]).toarray(), [[1, 0], [0.8, 0.2]])
     np.testing.assert_allclose(mixed(before, new, 0.5, add=True).toarray(), [[1, 0.5], [0.8, 0.7]])
     locked = np.array([False, True])
     np.testing.assert_allclose(mixed(before, new, locked=locked).toarray(), [[0, 0], [0.8, 0.6]])
