@@ -48,8 +48,6 @@ class JointCarriers:
         Which bones move vertices.
     free : (b,) array of bool
         Which bones end where no other bone begins or ends.
-    loose : (b,) array of bool
-        Which of these move no vertices: they stay as long as they are.
     anchors : (b,) array of int
         For a bone above most of the body that itself moves no vertices and shares no joint with one that does: the
         heaviest of those below that do; -1 for all others.
@@ -62,7 +60,6 @@ class JointCarriers:
     of_turns: Floats
     moving: Bools
     free: Bools
-    loose: Bools
     anchors: Ints
     above: Ints
 
@@ -106,7 +103,7 @@ def carriers_of(rig: FittedRig, source: TriangleMesh) -> JointCarriers:
         np.add.at(of_places, ends[free], of_turns[free])
     free = np.bincount(places)[tails] == 1
     shares = of_places / of_places.sum(axis=1, keepdims=True)
-    return JointCarriers(places, shares, of_turns, moving, free, free & ~moving, anchors, above)
+    return JointCarriers(places, shares, of_turns, moving, free, anchors, above)
 
 
 def moved_areas(rig: FittedRig, source: TriangleMesh) -> Floats:

@@ -30,7 +30,7 @@ _LEAST_REACH = 0.05
 _LEAST_AIM = 1e-4
 """Joints nearer to a bone's head than this, in units of the longest such way, do not turn it."""
 
-_MEDIAN_ROUNDS, _MEDIAN_SHARPNESS = 20, 0.01
+_MEDIAN_ROUNDS, _MEDIAN_SHARPNESS = 21, 0.01
 """Rounds of weighting by the inverse difference, and the least difference of two rotations that counts there."""
 
 
@@ -105,7 +105,8 @@ def place_joints(rig: FittedRig, source: TriangleMesh, normals: Floats, frames: 
     free = np.flatnonzero(carriers.free & carriers.moving)
     turns[free] = _aimed(skeleton, heads, turns, moved_areas(rig, source))[free]
     rigid = np.einsum("bij,bj->bi", turns, axes) * scales[:, None]
-    tails = np.where(carriers.loose[:, None], heads + rigid, tails)
+    loose = carriers.free & ~carriers.moving  # they stay as long as they are
+    tails = np.where(loose[:, None], heads + rigid, tails)
     lengths = np.linalg.norm(np.einsum("bij,bj->bi", rig.linear, axes), axis=1)
     tails[free] = heads[free] + unit_vectors(rigid[free]) * lengths[free, None]
     heads, tails = with_lengths(skeleton, heads, tails, rigid, carriers.places)
@@ -131,10 +132,8 @@ def standing(rig: FittedRig, source: TriangleMesh, frames: Floats | None = None)
     (3, 3) array of float
         The nearest of the frames, or the median rotation of all bones if none is near.
     """
-    masses, handedness = moved_areas(rig, source), rig.handedness
-    shares = _median_shares(rig.rotations, masses, handedness)
-    middle = nearest_orthogonal(np.einsum("b,bij->ij", shares, rig.rotations)[None], handedness)[0]
-    if handedness < 0 and frames is not None:
+    middle = _median(rig.rotations, moved_areas(rig, source), rig.handedness)
+    if rig.handedness < 0 and frames is not None:
         frames = np.concatenate([frames @ reflection for reflection in _REFLECTIONS])
     return nearest_frame(middle, frames, NEAR_FRAME)
 
@@ -157,15 +156,15 @@ def _aimed(skeleton: Skeleton, heads: Floats, turns: Floats, masses: Floats) -> 
     return aimed
 
 
-def _median_shares(rotations: Floats, masses: Floats, handedness: float) -> Floats:
-    """Share one among the bones, (b,), so that the blended rotation is their median by mass: limbs tilt no body."""
-    shares = masses / masses.sum()
+def _median(rotations: Floats, masses: Floats, handedness: float) -> Floats:
+    """Find the median (3, 3) by mass of the rotations of bones: limbs tilt no body."""
+    apart, middle = np.ones(len(masses)), np.eye(3)
     for _ in range(_MEDIAN_ROUNDS):
-        middle = nearest_orthogonal(np.einsum("b,bij->ij", shares, rotations)[None], handedness)[0]
-        apart = np.linalg.norm(rotations - middle, axis=(1, 2))
         shares = masses / np.maximum(apart, _MEDIAN_SHARPNESS)
-        shares /= shares.sum()
-    return shares
+        blended = np.einsum("b,bij->ij", shares / shares.sum(), rotations)
+        middle = nearest_orthogonal(blended[None], handedness)[0]
+        apart = np.linalg.norm(rotations - middle, axis=(1, 2))
+    return middle
 
 
 def root_direction(rig: FittedRig, source: TriangleMesh, root: int) -> Floats:

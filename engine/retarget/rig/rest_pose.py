@@ -68,13 +68,18 @@ def bend_angles(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> F
     (b,) array of float
         Angles in radians; zero for bones that move little of the body, and where no bone above moves any.
     """
-    areas = moved_areas(rig, source)
-    above = carriers_of(rig, source).above
-    judged = np.flatnonzero((areas > _LARGE_PART * areas.sum()) & (above >= 0))
-    relative = np.einsum("bji,bjk->bik", placed.rotations[above[judged]], placed.rotations[judged])
+    judged, above = _large_bones(rig, source)
+    relative = np.einsum("bji,bjk->bik", placed.rotations[above], placed.rotations[judged])
     angles = np.zeros(len(rig.skeleton))
     angles[judged] = np.arccos(((np.trace(relative, axis1=1, axis2=2) - 1) / 2).clip(-1, 1))
     return angles
+
+
+def _large_bones(rig: FittedRig, source: TriangleMesh) -> tuple[Ints, Ints]:
+    """Find bones (k,) that move much of the body, and the moving bones (k,) above them: all that have one."""
+    areas, above = moved_areas(rig, source), carriers_of(rig, source).above
+    large = np.flatnonzero((areas > _LARGE_PART * areas.sum()) & (above >= 0))
+    return large, above[large]
 
 
 def is_posed(rig: FittedRig, source: TriangleMesh, placed: PlacedJoints) -> bool:
@@ -174,14 +179,12 @@ def length_ratio(rig: FittedRig, source: TriangleMesh, rest: RestPose) -> float:
     float
         By what movements of the whole body grow, such as steps; the mean scale of the bones if none hangs on another.
     """
-    areas, above = moved_areas(rig, source), carriers_of(rig, source).above
-    judged = np.flatnonzero((areas > _LARGE_PART * areas.sum()) & (above >= 0))
+    judged, above = _large_bones(rig, source)
     before, after = (
-        float(np.linalg.norm(heads[judged] - heads[above[judged]], axis=1).sum())
-        for heads in (rig.skeleton.heads, rest.heads)
+        float(np.linalg.norm(heads[judged] - heads[above], axis=1).sum()) for heads in (rig.skeleton.heads, rest.heads)
     )
     if not (before > 0 and after > 0):
-        return float(np.average(rig.scales, weights=areas))
+        return float(np.average(rig.scales, weights=moved_areas(rig, source)))
     return after / before
 
 
