@@ -388,11 +388,8 @@ def _without_misplaced(
             rows = np.concatenate([parts.rows[part], *(parts.rows[each] for each in below)])
             if len(below) != 1 or given & {(int(a), int(b)) for a, b in chosen[rows]}:
                 continue
-            starts, nexts = (
-                [tree.heads[ends[each][0]] for tree, ends in zip(trees, (parts.sources, parts.targets), strict=True)]
-                for each in (part, below[0])
-            )
-            mine, other = nexts[0] - starts[0], nexts[1] - starts[1]
+            starts, nexts = _begins(parts, part, trees), _begins(parts, below[0], trees)
+            mine, other = nexts - starts
             astray, lost = float(np.linalg.norm(other - mine)), float(np.linalg.norm(mine))
             if np.linalg.norm(starts[1] - starts[0]) <= least:
                 continue
@@ -428,7 +425,7 @@ def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Sk
         if len(below) != 1 or not parts.single[below[0]]:
             continue
         row = parts.rows[part][0]
-        ways = _ways(parts, part, int(below[0]), trees)
+        ways = _begins(parts, below[0], trees) - _begins(parts, part, trees)
         start, goal = unit_vectors(np.stack([turned[row] @ ways[0], ways[1]]))
         if start @ goal > np.cos(_STRAY_DIRECTION):
             turned[row] = least_turns(start, goal) @ turned[row]
@@ -445,17 +442,14 @@ def _by_joints(ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], uprigh
     for part in sorted(range(len(parts)), key=lambda part: len(parts.above(part))):
         below, above = parts.below(part), parts.parents[part]
         if len(below) == 1:
-            start, goal = unit_vectors(np.stack(_ways(parts, part, int(below[0]), trees)))
+            start, goal = unit_vectors(_begins(parts, below[0], trees) - _begins(parts, part, trees))
             turned[parts.rows[part]] = least_turns(upright @ start, goal) @ upright
         elif not len(below) and above >= 0 and len(parts.below(above)) == 1:
             turned[parts.rows[part]] = turned[parts.rows[above][0]]
     return turned
 
 
-def _ways(parts: Segments, part: int, below: int, trees: tuple[Skeleton, Skeleton]) -> tuple[Floats, Floats]:
-    """Ways from where a segment begins to where the one below it does, in either rig, (3,) each."""
-    mine, others = (
-        tree.heads[bones[below][0]] - tree.heads[bones[part][0]]
-        for tree, bones in zip(trees, (parts.sources, parts.targets), strict=True)
-    )
-    return mine, others
+def _begins(parts: Segments, part: int, trees: tuple[Skeleton, Skeleton]) -> Floats:
+    """Find where a segment begins in either rig, (2, 3)."""
+    ends = zip(trees, (parts.sources, parts.targets), strict=True)
+    return np.array([tree.heads[bones[part][0]] for tree, bones in ends])

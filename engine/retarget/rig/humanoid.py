@@ -44,6 +44,9 @@ four makers; 0.3 if the forearm and the wrist of a wide knight are taken for the
 _PALM = 0.5
 """Bones of the palm begin nearer to the wrist than this part of where the next ones do."""
 
+_SPINE = ("spine", "chest", "upper_chest")
+_LEG = ("upper_leg", "lower_leg", "foot", "toes")
+_ARM = ("shoulder", "upper_arm", "lower_arm", "hand")
 _FINGERS = ("index", "middle", "ring", "little")
 
 _NO_LEGS = "The rig does not stand on two legs to which the feet belong, so its bones cannot be identified."
@@ -84,20 +87,15 @@ def humanoid_bones(skeleton: Skeleton, deforming: Bools, up: Floats) -> dict[str
     forward = sum((tree.bones.tails[way[-1]] - skeleton.heads[_leg(tree, way)[2]] for way in legs), np.zeros(3))
     forward -= (forward @ up) * up
     left = np.cross(up, forward)
-    found = {"hips": trunk, **_named(("spine", "chest", "upper_chest"), _spine(tree, trunk, chest))}
+    found = {"hips": trunk, **dict(zip(_SPINE, _spine(tree, trunk, chest), strict=False))}
     found |= _head(tree, chest, arms)
-    for ways, part in ((legs, _leg), (arms, _arm)):
+    for ways, part, names in ((legs, _leg, _LEG), (arms, _arm, _ARM)):
         places = [tree.bones.tails[way[-1]] @ left for way in ways]
         for side, way in zip(("right", "left"), (ways[number] for number in np.argsort(places)), strict=True):
-            bones = part(tree, way)
-            names = ("upper_leg", "lower_leg", "foot", "toes") if part is _leg else _ARM
-            found |= {f"{side}_{name}": bone for name, bone in zip(names, bones, strict=False) if bone >= 0}
-            if part is _arm:
-                found |= {f"{side}_{name}": bone for name, bone in _fingers(tree, bones[3]).items()}
+            bones = dict(zip(names, part(tree, way), strict=True))
+            bones |= _fingers(tree, bones.get("hand", -1))
+            found |= {f"{side}_{name}": bone for name, bone in bones.items() if bone >= 0}
     return found
-
-
-_ARM = ("shoulder", "upper_arm", "lower_arm", "hand")
 
 
 class _Tree:
@@ -109,15 +107,11 @@ class _Tree:
         for bone in skeleton.order[::-1]:
             if self.used[bone] and skeleton.parents[bone] >= 0:
                 self.used[skeleton.parents[bone]] = True
-        self._children = [[int(c) for c in skeleton.children(b) if self.used[c]] for b in range(len(skeleton))]
-        self.leaves = [int(b) for b in np.flatnonzero(self.used) if not self._children[b]]
+        self.children = [[int(c) for c in skeleton.children(b) if self.used[c]] for b in range(len(skeleton))]
+        self.leaves = [int(b) for b in np.flatnonzero(self.used) if not self.children[b]]
         self.heights = skeleton.heads @ up
         ends = np.concatenate([self.heights[deforming], (skeleton.tails @ up)[self.leaves]])
         self.low, self.height = float(ends.min()), float(np.maximum(np.ptp(ends), TINY))
-
-    def children(self, bone: int) -> list[int]:
-        """Return the bones that hang directly on a bone."""
-        return self._children[bone]
 
     def above(self, bone: int) -> list[int]:
         """Return a bone and all that it hangs on."""
@@ -127,12 +121,12 @@ class _Tree:
         """Return a bone and all that hangs on it."""
         found = [bone]
         for each in found:
-            found += self._children[each]
+            found += self.children[each]
         return found
 
     def tips(self, bone: int) -> list[int]:
         """Return the last bones of all that hangs on a bone."""
-        return [each for each in self.below(bone) if not self._children[each]]
+        return [each for each in self.below(bone) if not self.children[each]]
 
     def way(self, bone: int, tip: int) -> list[int]:
         """Return the bones from the one below a bone to a tip."""
@@ -150,9 +144,9 @@ class _Tree:
         best = -1
         found: list[list[int]] = []
         for bone in np.flatnonzero(self.used):
-            branches = [child for child in self.children(int(bone)) if set(self.tips(child)) & set(low)]
-            long = [self._longest(int(bone), child, low) for child in branches]
-            long = sorted(long, key=lambda way: -self.reach(way))[:2]
+            branches = [child for child in self.children[bone] if set(self.tips(child)) & set(low)]
+            ways = [[self.way(int(bone), tip) for tip in self.tips(child) if tip in low] for child in branches]
+            long = sorted((max(each, key=self.reach) for each in ways), key=lambda way: -self.reach(way))[:2]
             if len(long) == 2 and (best < 0 or self.heights[bone] > self.heights[best]):
                 best, found = int(bone), long
         if best < 0 or min(self.heights[way].max() - self.low for way in found) < _ANKLE * self.height:
@@ -183,10 +177,6 @@ class _Tree:
         """Tell how long a chain is."""
         return float(lengths_along(np.concatenate([self.bones.heads[list(way)], self.bones.tails[way[-1:]]]))[-1])
 
-    def _longest(self, bone: int, child: int, among: list[int]) -> list[int]:
-        ways = [self.way(bone, tip) for tip in self.tips(child) if tip in among]
-        return max(ways, key=self.reach)
-
     def middle(self, way: Sequence[int], end: int) -> int:
         """Find the place in a chain of the joint that is nearest to its middle; `end` begins where the chain ends."""
         lengths = lengths_along(self.bones.heads[[*way, end]])
@@ -213,10 +203,6 @@ def _check_upright(tree: _Tree, legs: list[list[int]], arms: list[list[int]]) ->
         )
 
 
-def _named(names: Sequence[str], bones: Sequence[int]) -> dict[str, int]:
-    return dict(zip(names, bones, strict=False))
-
-
 def _spine(tree: _Tree, hips: int, chest: int) -> list[int]:
     """Bones of the spine above the hips, three at most: the first, the one in the middle, and the last."""
     way = [] if chest == hips else tree.way(hips, chest)
@@ -225,14 +211,14 @@ def _spine(tree: _Tree, hips: int, chest: int) -> list[int]:
 
 def _head(tree: _Tree, chest: int, arms: list[list[int]]) -> dict[str, int]:
     """Find neck and head."""
-    branches = [child for child in tree.children(chest) if child not in {way[0] for way in arms}]
+    branches = [child for child in tree.children[chest] if child not in {way[0] for way in arms}]
     if not branches:
         return {}
     start = max(branches, key=lambda child: max((tree.bones.tails @ tree.up)[tree.below(child)]))
     way = [start]
-    while len(tree.children(way[-1])) == 1:
-        way.append(tree.children(way[-1])[0])
-    if not tree.children(way[-1]) and len(way) > 1:  # a chain alone: its end is made up if there are three
+    while len(tree.children[way[-1]]) == 1:
+        way.append(tree.children[way[-1]][0])
+    if not tree.children[way[-1]] and len(way) > 1:  # a chain alone: its end is made up if there are three
         way = way[:2]
     return {"head": way[0]} if len(way) == 1 else {"neck": way[0], "head": way[-1]}
 
@@ -261,10 +247,8 @@ def _arm(tree: _Tree, way: list[int]) -> list[int]:
     middle, first = heads[tree.bones.parents[way[0]]], 0
     while wrist - first > 2 and first < 2:
         joints = heads[way[first : first + 3]]
-        steps, away = (
-            np.linalg.norm(np.diff(joints, axis=0), axis=1),
-            (joints[:2] - middle) @ (heads[way[wrist]] - middle),
-        )
+        steps = np.linalg.norm(np.diff(joints, axis=0), axis=1)
+        away = (joints[:2] - middle) @ (heads[way[wrist]] - middle)
         if steps[0] >= _SHORT * steps[1] and away[0] >= _INWARD * away[1]:
             break
         if tree.balance(way[first + 1 : wrist], way[wrist]) < _BALANCED:
