@@ -6,10 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array, diags_array, eye_array
 from scipy.spatial import cKDTree
 
 from ...mesh.closest_points import ClosestPoints, FoundPoints
+from ...mesh.connectivity.adjacency import pair_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Floats
 
@@ -48,9 +49,8 @@ class Homes:
         Each is averaged with its neighbours, as often as triangles lead to them: twice but along a border.
         """
         homes = matches.interpolate(body.triangles, body.vertices)
-        ends = target.triangles.ravel(), np.roll(target.triangles, -1, axis=1).ravel()
-        one_way = csr_array((np.ones(len(ends[0])), ends), shape=(len(homes), len(homes)))
-        around = csr_array(one_way + one_way.T + diags_array(np.ones(len(homes))))
+        sides = np.stack([target.triangles, np.roll(target.triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+        around = csr_array(pair_matrix(sides, np.ones(len(sides)), len(homes)) + eye_array(len(homes)))
         average = csr_array(diags_array(1 / around.sum(axis=1)) @ around)
         for _ in range(_ROUNDS):
             homes = average @ homes

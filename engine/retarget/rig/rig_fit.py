@@ -103,12 +103,12 @@ def fit_rig_steps(
     target_to_source.check(target, source)
     bodies, maps = (source, target), (source_to_target, target_to_source)
     if not source_to_target.mirrors(source, target):
-        return (yield from _fitted_steps(bodies, maps, weights, skeleton, (refine, known)))
+        return (yield from _fitted_steps(bodies, maps, weights, skeleton, refine=refine, known=known))
     reflection = reflected_mesh(source)
     ends = (reflected_positions(each) for each in (skeleton.heads, skeleton.tails))
     maps = source_to_target, reflected_map(reflection, target_to_source)
     seen = Skeleton(skeleton.parents, *ends)
-    fitted = yield from _fitted_steps((reflection, target), maps, weights, seen, (refine, known))
+    fitted = yield from _fitted_steps((reflection, target), maps, weights, seen, refine=refine, known=known)
     back = reflected_map(source, fitted.target_to_source)
     # The reflection comes before what moves it: it changes the first column of each matrix.
     linear, rotations = (reflected_positions(each) for each in (fitted.linear, fitted.rotations))
@@ -123,10 +123,12 @@ def _fitted_steps(
     maps: tuple[SurfaceMap, SurfaceMap],
     weights: csr_array,
     skeleton: Skeleton,
-    options: tuple[bool, KnownShapes | None],
+    *,
+    refine: bool,
+    known: KnownShapes | None,
 ) -> Steps[FittedRig]:
-    """Fit a rig across maps that keep left and right; the options are `refine` and `known`."""
-    (source, _), (source_to_target, target_to_source), (refine, known) = bodies, maps, options
+    """Fit a rig across maps that keep left and right."""
+    (source, _), (source_to_target, target_to_source) = bodies, maps
     yield Progress(0.0, "Cleaning")
     x, y = yield from within(_cleaned_steps(bodies, known), 0.0, 0.05)
     body, there = x.mesh, _on_main(y, source_to_target, x)

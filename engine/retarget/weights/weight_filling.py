@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
+from ...mesh.connectivity.adjacency import pair_matrix
 from ...mesh.connectivity.welded_parts import WeldedParts
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import Bools, Floats, Ints, marked
@@ -119,9 +120,8 @@ def continued(values: csr_array, places: Bools, parts: WeldedParts, held: Floats
 def _stiffness(positions: Floats, triangles: Ints) -> csr_array:
     """Return the Laplacian (k, k) of a piece of surface; without an area, as if all edges were alike."""
     count = len(positions)
-    tail, head = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
-    one_way = csr_array((np.ones(len(tail)), (tail, head)), shape=(count, count))
-    neighbours = csr_array(one_way + one_way.T)
+    sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    neighbours = pair_matrix(sides, np.ones(len(sides)), count)
     alike = csr_array(diags_array(neighbours.sum(axis=1)) - neighbours)
     try:
         surface = laplace_beltrami(TriangleMesh(positions, triangles)).stiffness
