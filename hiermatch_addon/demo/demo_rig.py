@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from ..common.access import mesh_of, open_collections, view_layer_of
+from ..scene.armatures import pose_of
 from .demo_skeleton import BONES, STANDING, set_pose
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ _KEYS: Final = {"Well Fed": ("loin", 0.28, 0.09), "Big Nose": ("head", 0.09, 0.0
 
 def posed_joints(armature: bpy.types.Object) -> dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]:
     """Return head and tail of each bone of an armature in its pose, in the armature's space."""
-    pose = cast("bpy.types.Pose", armature.pose)
+    pose = pose_of(armature)
     return {bone.name: (np.array(bone.head, np.float64), np.array(bone.tail, np.float64)) for bone in pose.bones}
 
 

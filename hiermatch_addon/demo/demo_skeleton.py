@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, cast
+from typing import TYPE_CHECKING, Final
 
 import bpy
 import numpy as np
 from mathutils import Euler
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import splu
+
+from ..scene.armatures import pose_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -185,7 +187,7 @@ def build_armature(name: str, scene: bpy.types.Scene) -> bpy.types.Object:
 
 def set_pose(armature: bpy.types.Object, pose: Mapping[str, tuple[float, float, float]]) -> None:
     """Turn the bones of an armature; bones that the pose does not name return to rest."""
-    for pose_bone in cast("bpy.types.Pose", armature.pose).bones:
+    for pose_bone in pose_of(armature).bones:
         degrees = pose.get(pose_bone.name, (0.0, 0.0, 0.0))
         turn = Euler(np.radians(degrees).tolist()).to_matrix()
         rest = pose_bone.bone.matrix_local.to_3x3()

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..common.access import open_collections, view_layer_of
 from ..common.phrases import listed
-from .armatures import armature_of
+from .armatures import armature_of, pose_of
 from .posing.pose_state import bring_back
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def _copied(context: bpy.types.Context, source: bpy.types.Object, name: str) -> 
     _stop_animation(data)
     cast("bpy.types.Scene", context.scene).collection.objects.link(copy)
     copy.matrix_world = matrix
-    for bone in _pose_of(copy).bones:
+    for bone in pose_of(copy).bones:
         bone.matrix_basis.identity()
     copy.hide_viewport = False
     copy.hide_set(state=False)
@@ -225,7 +225,7 @@ def _stop_animation(data: bpy.types.Object | bpy.types.Armature) -> None:
 
 def _constraint_pointers(armature: bpy.types.Object) -> Iterator[tuple[Any, str]]:
     """Go through all constraints, and the members of them and of their targets that point to objects."""
-    for constraint in (constraint for bone in _pose_of(armature).bones for constraint in bone.constraints):
+    for constraint in (constraint for bone in pose_of(armature).bones for constraint in bone.constraints):
         for holder in (constraint, *getattr(constraint, "targets", ())):
             for prop in holder.bl_rna.properties:
                 pointer = prop.type == "POINTER" and cast("Any", prop).fixed_type.identifier == "Object"
@@ -240,10 +240,6 @@ def _driver_pointers(armature: bpy.types.Object) -> Iterator[tuple[Any, str]]:
             for curve in data.animation_data.drivers:
                 for variable in cast("bpy.types.Driver", curve.driver).variables:
                     yield from ((place, "id") for place in cast("Any", variable).targets)
-
-
-def _pose_of(armature: bpy.types.Object) -> bpy.types.Pose:
-    return cast("bpy.types.Pose", armature.pose)
 
 
 @contextmanager

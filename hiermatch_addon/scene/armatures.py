@@ -32,6 +32,7 @@ __all__ = [
     "find_armature",
     "held_by",
     "moving_armatures",
+    "pose_of",
     "read_rig",
     "read_skeleton",
 ]
@@ -63,6 +64,11 @@ class SourceRig:
 def armature_of(obj: bpy.types.Object) -> bpy.types.Armature:
     """Return the armature data of an armature object."""
     return cast("bpy.types.Armature", obj.data)
+
+
+def pose_of(obj: bpy.types.Object) -> bpy.types.Pose:
+    """Return the pose of an armature object."""
+    return cast("bpy.types.Pose", obj.pose)
 
 
 def bone_of(obj: bpy.types.Object) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ..common.phrases import listed
-from .armatures import armature_of
+from .armatures import armature_of, pose_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -39,8 +39,8 @@ _LOCAL = ("LOCAL", "LOCAL_WITH_PARENT", "LOCAL_OWNER_ORIENT")
 
 def adapt_constraints(source: bpy.types.Object, armature: bpy.types.Object) -> None:
     """Set angles and lengths in the constraints of an armature that was copied from `source` and changed in shape."""
-    for bone in cast("bpy.types.Pose", armature.pose).bones:
-        model = cast("bpy.types.Pose", source.pose).bones.get(bone.name)
+    for bone in pose_of(armature).bones:
+        model = pose_of(source).bones.get(bone.name)
         if model is None:
             continue
         growth = _growth(armature, source, bone.name)
@@ -52,7 +52,7 @@ def adapt_constraints(source: bpy.types.Object, armature: bpy.types.Object) -> N
 def displaced_bones(armature: bpy.types.Object) -> list[str]:
     """Return the bones of an evaluated armature that its constraints or drivers move away from rest."""
     found = []
-    for bone in cast("bpy.types.Pose", armature.pose).bones:
+    for bone in pose_of(armature).bones:
         rest = armature_of(armature).bones[bone.name]
         ends = ((bone.head, rest.head_local), (bone.tail, rest.tail_local))
         if max((now - then).length for now, then in ends) > _DISPLACED * rest.length:

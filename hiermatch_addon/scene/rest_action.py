@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from mathutils import Matrix
 
-from .armatures import armature_of
+from .armatures import armature_of, pose_of
 from .motion.action_curves import TRANSFORMS, CurveMaker, assign_action, played_action, rotation_channel
 from .motion.carried_action_io import mark_carried, to_be_replaced
 
@@ -124,7 +124,7 @@ def make_rest_action(
 
 def _write(maker: CurveMaker, armature: bpy.types.Object, bases: Mapping[str, Matrix], *, show: bool) -> None:
     """Write a pose into an action, and leave the armature in it if that is to be shown."""
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     for name, basis in bases.items():
         bone = bones[name]
         stood = {channel: list(getattr(bone, channel)) for channel in TRANSFORMS}

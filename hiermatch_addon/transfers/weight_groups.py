@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
-from ..scene.armatures import armature_of, bone_of, find_armature
+from ..scene.armatures import armature_of, bone_of, find_armature, pose_of
 from ..scene.character import parts_of
 from ..scene.deform_layer import read_weights, write_weights
 from ..storage.written_names import written_names
@@ -130,6 +130,6 @@ def _part_columns(obj: bpy.types.Object, names: Sequence[str], chosen: NDArray[n
 
 def _selected_bones(armature: bpy.types.Object) -> set[str]:
     """Return the names of the selected bones: the bones themselves know until Blender 4.5, their poses from 5.0 on."""
-    pose = cast("bpy.types.Pose", armature.pose)
+    pose = pose_of(armature)
     bones: list[Any] = list(pose.bones)
     return {bone.name for bone in bones if (bone.select if hasattr(bone, "select") else bone.bone.select)}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
+from ..armatures import pose_of
 from .action_curves import played_action, rotation_channel
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def key_automatically(
     action = played_action(armature)
     if action is not None and not action.is_editable:
         return False
-    pose, options = cast("bpy.types.Pose", armature.pose).bones, _options(tools)
+    pose, options = pose_of(armature).bones, _options(tools)
     keying_set = scene.keying_sets_all.active if tools.use_keyframe_insert_keyingset else None
     wanted = [(name, rotation_channel(pose[name].rotation_mode)) for name in bones]
     wanted += [(name, "location") for name in placed]

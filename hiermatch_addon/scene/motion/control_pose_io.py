@@ -12,7 +12,7 @@ import numpy as np
 from mathutils import Matrix
 from scipy.spatial.transform import Rotation
 
-from ..armatures import armature_of
+from ..armatures import armature_of, pose_of
 from .own_scene import own_scene
 
 if TYPE_CHECKING:
@@ -157,7 +157,7 @@ class _Stage:
 
     def __init__(self, alone: OwnScene, controls: Controls) -> None:
         self._alone, armature = alone, alone.armature
-        self._pose: Any = cast("bpy.types.Pose", armature.pose).bones
+        self._pose: Any = pose_of(armature).bones
         turned = list(controls.turning.values())
         self._bones, self._names = list(controls.turning), list(dict.fromkeys(turned))
         self._first = [turned.index(name) for name in self._names]
@@ -301,7 +301,7 @@ def leaders_of(armature: bpy.types.Object, name: str, inputs: dict[str, set[str]
 
     What moves it by drivers counts as well if these `inputs` are given.
     """
-    pose, found = cast("bpy.types.Pose", armature.pose).bones, [name]
+    pose, found = pose_of(armature).bones, [name]
     for each in found:
         bone = pose[each]
         targets = [] if bone.parent is None else [bone.parent.name]

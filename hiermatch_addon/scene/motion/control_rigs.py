@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 from mathutils import Quaternion
 
-from ..armatures import armature_of
+from ..armatures import armature_of, pose_of
 from .control_pose_io import Controls, Switch, at_rest, leaders_of
 from .holders import holds
 
@@ -88,7 +88,7 @@ class Candidates:
 
 def candidates_of(armature: bpy.types.Object, bones: Sequence[str]) -> Candidates | None:
     """Find what may move some bones of an armature; None if constraints hold none of them: they move by themselves."""
-    pose = cast("bpy.types.Pose", armature.pose).bones
+    pose = pose_of(armature).bones
     if not any(_is_held(pose[name]) for name in bones):
         return None
     driven = driven_bones(armature)
@@ -127,7 +127,7 @@ def worth_trying(
 
 def carriers(armature: bpy.types.Object, found: Candidates) -> list[str]:
     """Return the controls that may carry the whole body to another place."""
-    pose = cast("bpy.types.Pose", armature.pose).bones
+    pose = pose_of(armature).bones
     return [name for name in found.free if not any(cast("Any", pose[name]).lock_location)]
 
 
@@ -137,7 +137,7 @@ def tried_controls(
     """Turn the controls of each group in a copy of the armature, group after group, and see what follows."""
     turn = Quaternion(_AXIS, _TURN)
     with at_rest(armature, switches) as alone:
-        pose = cast("bpy.types.Pose", alone.armature.pose).bones
+        pose = pose_of(alone.armature).bones
         before = alone.places(found.bones)
         lengths = np.array([armature_of(armature).bones[name].length for name in found.bones])
         starts = {name: alone.matrix(name).to_3x3().normalized() for group in groups for name in group}
@@ -203,7 +203,7 @@ def _best_control(
 
     One that turns the bone above it just so is that bone's or one further up, if that bone has any.
     """
-    pose = cast("bpy.types.Pose", armature.pose).bones
+    pose = pose_of(armature).bones
     parent = getattr(armature_of(armature).bones[bone].parent, "name", "")
     steered = any(_turns(followers[parent]) for followers in found.followers.values() if parent in followers)
     ranks = {}

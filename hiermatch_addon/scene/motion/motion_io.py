@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ....engine import Motion, motion_of_matrices, posed_motion, rotation_matrices
-from ..armatures import armature_of
+from ..armatures import armature_of, pose_of
 from .action_curves import (
     CurveMaker,
     assign_action,
@@ -91,7 +91,7 @@ _TURNED = 0.02
 
 def needs_evaluation(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
     """Tell whether more than an action's curves decides how an armature stands: constraints, drivers and such."""
-    pose = cast("bpy.types.Pose", armature.pose)
+    pose = pose_of(armature)
     if is_carried(armature, action):
         return True
     if any(acts(constraint, action) for bone in pose.bones for constraint in bone.constraints):
@@ -113,7 +113,7 @@ def posed_at(action: bpy.types.Action, armature: bpy.types.Object, frames: NDArr
     curves: dict[str, list[tuple[str, Any]]] = {}
     for bone, channel, curve in bone_curves(action, armature):
         curves.setdefault(bone, []).append((channel, curve))
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     basis = np.stack([_basis(bone, curves.get(bone.name, ()), frames) for bone in bones], axis=1)
     return posed_motion(own_skeleton(armature), rest_matrices(armature), basis)
 
@@ -266,7 +266,7 @@ def _left_by(armature: bpy.types.Object) -> set[tuple[str, str]]:
 
 def _put_to_rest(armature: bpy.types.Object, left: set[tuple[str, str]]) -> None:
     """Put channels of bones to rest."""
-    bones: Any = cast("bpy.types.Pose", armature.pose).bones
+    bones: Any = pose_of(armature).bones
     for bone, channel in left:
         setattr(bones[bone], channel, bones[bone].bl_rna.properties[channel].default_array)
 
@@ -294,7 +294,7 @@ def _write_curve(curve: Any, keys: BoneKeys, index: int) -> None:  # noqa: ANN40
 
 def set_pose(armature: bpy.types.Object, bases: dict[str, NDArray[np.float64]]) -> None:
     """Pose bones by their transforms (4, 4) against their parents; scales stay."""
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     for name, basis in bases.items():
         scale = bones[name].scale.copy()
         bones[name].matrix_basis = Matrix(basis.tolist())
@@ -303,7 +303,7 @@ def set_pose(armature: bpy.types.Object, bases: dict[str, NDArray[np.float64]]) 
 
 def turned_above(armature: bpy.types.Object, moved: Collection[str]) -> list[str]:
     """Return the names of bones that are turned in the pose, on which some that are moved hang, and which are not."""
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     above = {parent.name for name in moved if name in bones for parent in bones[name].parent_recursive}
     chosen = [bone for bone in bones if bone.name in above.difference(moved)]
     return [bone.name for bone in chosen if bone.matrix_basis.to_quaternion().angle > _TURNED]

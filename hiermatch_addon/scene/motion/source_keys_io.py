@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
+from ..armatures import pose_of
 from .action_curves import bone_curves, frame_range, object_curves, rotation_channel
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ def read_keys(action: bpy.types.Action, armature: bpy.types.Object) -> ActionKey
     cycles: dict[tuple[str, str], Cycle] = {}
     extrapolations: dict[tuple[str, str], str] = {}
     modified = False
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     whole = ((OBJECT, channel, curve) for channel, curve in object_curves(action, armature))
     for bone, channel, curve in chain(bone_curves(action, armature), whole):
         owner = armature if bone == OBJECT else bones[bone]

@@ -11,7 +11,7 @@ from uuid import uuid4
 import bpy
 from mathutils import Matrix
 
-from ..armatures import armature_of, bone_of, moving_armatures
+from ..armatures import armature_of, bone_of, moving_armatures, pose_of
 from ..deform_layer import read_weights
 from ..motion.action_curves import rotation_channel
 from .pose_state import bring_back, is_aside, put_aside
@@ -79,7 +79,7 @@ def begin_exercise(scene: bpy.types.Scene, armature: bpy.types.Object, bones: It
     put_aside(armature, _WHY)
     action: Any = bpy.data.actions.new(f"{armature.name} Test Poses")
     cast("Any", armature.animation_data).action = action
-    pose = cast("bpy.types.Pose", armature.pose)
+    pose = pose_of(armature)
     turns = (None, Matrix.Rotation(_ANGLE, 4, "X"), Matrix.Rotation(_ANGLE, 4, "Z"), None)
     frame, markers = 1, []
     for name in bones:

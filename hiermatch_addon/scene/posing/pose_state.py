@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any, Final, cast
 
-from ..armatures import armature_of
+from ..armatures import armature_of, pose_of
 from ..motion.action_curves import TRANSFORMS, played_action
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def put_aside(armature: bpy.types.Object, why: str) -> None:
     tweaked = animation.use_tweak_mode
     animation.use_tweak_mode = False  # in which the action could not be taken away
     slot = getattr(animation, "action_slot", None)
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     held = [(bone.name, one.name) for bone in bones for one in bone.constraints if not one.mute]
     owner[_STATE] = json.dumps(
         {
@@ -78,7 +78,7 @@ def bring_back(armature: bpy.types.Object) -> None:
         animation.action_slot = animation.action.slots[state["slot"]]
     animation.use_nla, owner.data.pose_position = state["nla"], state["position"]
     animation.use_tweak_mode = state.get("tweaked", False)
-    bones = cast("bpy.types.Pose", armature.pose).bones
+    bones = pose_of(armature).bones
     for name, values in state["pose"].items():
         if name in bones:
             for channel, value in zip(TRANSFORMS, values, strict=True):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 
 from ....engine import reduced_keys, rotation_channels, slopes_of
-from ...scene.armatures import armature_of
+from ...scene.armatures import armature_of, pose_of
 from ...scene.motion.action_curves import rotation_channel
 from ...scene.motion.motion_io import BoneKeys
 from ...scene.motion.rigs import local_poses, own_skeleton
@@ -71,7 +71,7 @@ def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[
     tree = own_skeleton(armature)
     extent = float(np.ptp(tree.joints, axis=0).max())
     channels = []
-    for number, bone in enumerate(cast("bpy.types.Pose", armature.pose).bones):
+    for number, bone in enumerate(pose_of(armature).bones):
         if found.moved[number]:
             values = rotation_channels(local.rotations[:, number], bone.rotation_mode)
             coarse = 0.5 if bone.rotation_mode == "QUATERNION" else 1.0  # a quaternion turns by half the angle

@@ -18,7 +18,7 @@ from ...jobs.stepped_job import SteppedJob
 from ...jobs.transfer import TransferReport
 from ...jobs.transfer_job import Carried
 from ...properties.bone_pairs import pairing_notes, pairing_of, rows_of
-from ...scene.armatures import armature_of
+from ...scene.armatures import armature_of, pose_of
 from ...scene.character import SideReference
 from ...scene.motion.action_curves import scaled_bones
 from ...scene.motion.auto_keying import key_automatically
@@ -421,7 +421,7 @@ def _check_channels(rig: bpy.types.Object, pairing: BonePairing) -> None:
     ObjectError
         If some are locked.
     """
-    bones = cast("bpy.types.Pose", rig.pose).bones
+    bones = pose_of(rig).bones
     paired = [bones[int(number)] for number in np.unique(pairing.targets)]
     locked = [bone.name for bone in paired if any(cast("Any", bone.lock_rotation))]
     if locked and not is_steered(rig, pairing):
@@ -435,7 +435,7 @@ def _set_pose(
     scene: bpy.types.Scene, rig: bpy.types.Object, found: TransferredMotion, steered: SteeredRig | None
 ) -> list[str]:
     """Pose an armature as computed: bones with partners, or what turns them, only. Say what is to be known."""
-    bones = cast("bpy.types.Pose", rig.pose).bones
+    bones = pose_of(rig).bones
     local = local_poses(found.motion, rig)
     bases = {}
     for number, bone in enumerate(bones):
@@ -470,7 +470,7 @@ def _notes(
     notes = []
     held = [
         bone.name
-        for bone in cast("bpy.types.Pose", target.pose).bones
+        for bone in pose_of(target).bones
         if bone.name in moved and any(acts(constraint) for constraint in bone.constraints)
     ]
     if held:

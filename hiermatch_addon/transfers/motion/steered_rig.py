@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ....engine import Progress, rotation_channels
 from ...common.errors import ObjectError
 from ...common.phrases import listed
-from ...scene.armatures import armature_of
+from ...scene.armatures import armature_of, pose_of
 from ...scene.motion.action_curves import rotation_channel
 from ...scene.motion.control_pose_io import posed_controls, set_switches
 from ...scene.motion.control_rigs import (
@@ -78,7 +78,7 @@ class SteeredRig:
 
     def channels(self, armature: bpy.types.Object, plain: list[BoneChannels]) -> list[BoneChannels]:
         """Make the channels of the controls; bones without one that may be turned keep theirs (`plain`)."""
-        pose = cast("bpy.types.Pose", armature.pose).bones
+        pose = pose_of(armature).bones
         locked = {bone.name for bone in pose if any(bone.lock_rotation)}
         tree = own_skeleton(armature)
         extent = float(np.ptp(tree.joints, axis=0).max())
@@ -130,7 +130,7 @@ class SteeredRig:
 
 def is_steered(armature: bpy.types.Object, pairing: BonePairing) -> bool:
     """Tell whether constraints hold bones with partners."""
-    pose = cast("bpy.types.Pose", armature.pose).bones
+    pose = pose_of(armature).bones
     return any(holds(each) for number in np.unique(pairing.targets) for each in pose[int(number)].constraints)
 
 
