@@ -169,8 +169,10 @@ def hand_over(part: bpy.types.Object, other: Side) -> None:
         return
 
 
-def unbind(target: Side, armature: bpy.types.Object, kept: Container[bpy.types.Object]) -> list[bpy.types.Object]:
-    """Let no other armatures move a side than one and those to keep.
+def unbind(
+    target: Side, armature: bpy.types.Object, kept: Container[bpy.types.Object] | None
+) -> list[bpy.types.Object]:
+    """Let no other armatures move a side than one and those to keep; None for all.
 
     Their modifiers are switched off, and what hangs on them, hangs on the new one, where it stands while they are at
     rest: that is how the vertices of a mesh belong to its armature.  What then moves nothing any more is hidden.  The

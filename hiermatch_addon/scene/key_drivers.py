@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from .character import parts_of
 from .shape_key_io import key_value_path, keys_of
 
 if TYPE_CHECKING:
@@ -12,17 +13,24 @@ if TYPE_CHECKING:
 
     import bpy
 
+    from .character import Side
+
 __all__ = ["copy_key_drivers", "counterparts", "drive_key", "point_drivers"]
 
 
 def counterparts(
-    source: bpy.types.Object,
+    source: Side,
     target: bpy.types.Object,
     source_armature: bpy.types.Object | None,
     target_armature: bpy.types.Object | None,
 ) -> dict[bpy.types.ID, bpy.types.ID]:
-    """Return what takes the place of the source, its mesh, keys and armature where drivers point to them."""
-    pairs: list[tuple[Any, Any]] = [(source, target), (source.data, target.data), (keys_of(source), keys_of(target))]
+    """Return what takes the place of the source, its mesh, keys and armature where drivers point to them.
+
+    Of a source of several parts, the target takes that of all of them.
+    """
+    pairs: list[tuple[Any, Any]] = []
+    for part in parts_of(source):
+        pairs += [(part, target), (part.data, target.data), (keys_of(part), keys_of(target))]
     if source_armature is not None and target_armature is not None:
         pairs += [(source_armature, target_armature), (source_armature.data, target_armature.data)]
     return {mine: theirs for mine, theirs in pairs if mine is not None and theirs is not None}

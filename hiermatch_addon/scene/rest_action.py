@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
 from mathutils import Matrix
 
 from .armatures import armature_of, pose_of
@@ -12,10 +13,9 @@ from .motion.action_curves import TRANSFORMS, CurveMaker, assign_action, played_
 from .motion.carried_action_io import mark_carried, to_be_replaced
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     import bpy
-    import numpy as np
     from numpy.typing import NDArray
 
 __all__ = ["keep_pose", "kept_pose", "make_rest_action", "pose_bases", "was_kept"]
@@ -24,15 +24,25 @@ _KEPT = "hiermatch_kept as it was"
 """Custom property of armature objects: the action in which the target looks as before it got another rest pose."""
 
 
-def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.float64]]) -> dict[str, Matrix]:
-    """Find the transforms of pose bones that move them as wanted.
+def pose_bases(
+    armature: bpy.types.Object,
+    names: Sequence[str],
+    turns: NDArray[np.float64],
+    before: NDArray[np.float64],
+    after: NDArray[np.float64],
+) -> dict[str, Matrix]:
+    """Find the transforms of pose bones that turn them from rest, and take their heads elsewhere, in world space.
 
     Parameters
     ----------
     armature : bpy.types.Object
         The armature object.
-    matrices : mapping from str to (4, 4) array of float
-        For each bone how it is to move in world space from its rest.
+    names : sequence of str
+        Names of bones; those that the armature lacks are passed over.
+    turns : (b, 3, 3) array of float
+        How each is to turn.
+    before, after : (b, 3) array of float
+        Where its head is, and where it is to be.
 
     Returns
     -------
@@ -41,8 +51,12 @@ def pose_bases(armature: bpy.types.Object, matrices: Mapping[str, NDArray[np.flo
     """
     world = armature.matrix_world
     into = world.inverted_safe()
+    moves = np.tile(np.eye(4), (len(names), 1, 1))
+    moves[:, :3, :3] = turns
+    moves[:, :3, 3] = after - np.einsum("bij,bj->bi", turns, before)
+    matrices = {name: Matrix(move.tolist()) for name, move in zip(names, moves, strict=True)}
     bones = [bone for bone in armature_of(armature).bones if bone.name in matrices]
-    posed = {bone.name: into @ Matrix(matrices[bone.name].tolist()) @ world @ bone.matrix_local for bone in bones}
+    posed = {bone.name: into @ matrices[bone.name] @ world @ bone.matrix_local for bone in bones}
     bases = {}
     for bone in bones:
         parent = bone.parent

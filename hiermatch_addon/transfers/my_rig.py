@@ -169,8 +169,7 @@ class MyRigTransfer(Transfer):
         armature = before or copy_to(context, model, f"{model.name} {target.name}", first)
         cast("Any", armature)[_MADE] = json.dumps([model.name, target.name])
         missing = move_joints(context, armature, self._names, cast("PlacedJoints", self._placed))
-        own = find_armature(source), find_armature(target)
-        places = {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, *own).items()}
+        places = counterparts(source, first, find_armature(source), find_armature(target))
         notes = repoint(armature, {**places, model: armature, armature_of(model): armature_of(armature)})
         adapt_constraints(model, armature)
         if missing:

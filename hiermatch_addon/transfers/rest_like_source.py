@@ -5,15 +5,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-import numpy as np
-
 from ...engine import Progress, at_rest, length_ratio, rest_pose
 from ..common.access import view_layer_of
 from ..common.errors import NothingToCarryError
 from ..common.phrases import listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import move_joints
-from ..scene.armatures import armature_of, bone_weights, find_armature
+from ..scene.armatures import bone_weights, find_armature
 from ..scene.binding import made_rig, worn_with
 from ..scene.posing.rest_mesh_io import bring_to_rest, plays_actions, why_not_to_rest
 from ..scene.rest_action import keep_pose, pose_bases, was_kept
@@ -115,12 +113,7 @@ class RestLikeSource(Transfer):
         """Find the pose in which the target looks as it did."""
         rest = cast("RestPose", self._rest)
         back = rest.turns.transpose(0, 2, 1)
-        moves = np.tile(np.eye(4), (len(self._rig.names), 1, 1))
-        moves[:, :3, :3] = back
-        moves[:, :3, 3] = rest.posed_heads - np.einsum("bij,bj->bi", back, rest.heads)
-        present = armature_of(armature).bones
-        wanted = {name: move for name, move in zip(self._rig.names, moves, strict=True) if name in present}
-        return pose_bases(armature, wanted)
+        return pose_bases(armature, self._rig.names, back, rest.heads, rest.posed_heads)
 
 
 def _resize(context: bpy.types.Context, armature: bpy.types.Object, ratio: float) -> None:

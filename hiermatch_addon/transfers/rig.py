@@ -131,7 +131,7 @@ class RigTransfer(Transfer):
         armature = made or copy_to(context, model, f"{target.name} Rig", first)
         missing = move_joints(context, armature, self.names, placed)
         if made is None:
-            self._notes += repoint(armature, _counterparts(source, target, model, armature))
+            self._notes += repoint(armature, counterparts(source, first, model, armature))
             mark_made(armature, model)
         elif missing:
             self._notes.append(f'"{armature.name}", which was made before, lacks {listed(missing)}.')
@@ -142,7 +142,7 @@ class RigTransfer(Transfer):
             if made is None:
                 hang_in_place(armature, target, beside)
             self._notes += bind(target, armature, source, beside)
-            replaced = [] if beside is None else unbind(target, armature, beside)
+            replaced = unbind(target, armature, beside)
             self._notes += lost_poses(target, replaced)
         view_layer_of(context).update()
         self._notes += displaced_notes(armature) if made is None else []
@@ -176,20 +176,7 @@ class RigTransfer(Transfer):
     def _keep_rest(self, armature: bpy.types.Object) -> str:
         """Keep the rest pose as an action."""
         rest = cast("RestPose", self._rest)
-        moves = np.tile(np.eye(4), (len(self.names), 1, 1))
-        moves[:, :3, :3] = rest.turns
-        moves[:, :3, 3] = rest.heads - np.einsum("bij,bj->bi", rest.turns, rest.posed_heads)
-        present = armature_of(armature).bones
-        wanted = {name: move for name, move in zip(self.names, moves, strict=True) if name in present}
-        bases = pose_bases(armature, wanted)
+        bases = pose_bases(armature, self.names, rest.turns, rest.posed_heads, rest.heads)
         action, notes = make_rest_action(armature, bases, show=self._settings.rest_shown)
         self._notes += notes
         return action.name
-
-
-def _counterparts(
-    source: Side, target: Side, model: bpy.types.Object, armature: bpy.types.Object
-) -> dict[bpy.types.ID, bpy.types.ID]:
-    """Return what takes the place of what: of several parts, the first target's that of all of the source's."""
-    first = parts_of(target)[0]
-    return {mine: its for part in parts_of(source) for mine, its in counterparts(part, first, model, armature).items()}

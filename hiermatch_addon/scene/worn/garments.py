@@ -258,9 +258,7 @@ def fitted_copy(
     copy.select_set(state=False)
     # Of a body of several objects the largest stands for all that something may point to.
     largest = max(parts_of(target), key=lambda part: len(mesh_of(part).vertices))
-    places: dict[bpy.types.ID, bpy.types.ID] = {}
-    for part in parts_of(source):
-        places |= counterparts(part, largest, find_armature(source), find_armature(target))
+    places = counterparts(source, largest, find_armature(source), find_armature(target))
     places[item] = copy  # also of one that is part of the body
     point_to(copy, item, places, growth)
     keys = keys_of(copy)
