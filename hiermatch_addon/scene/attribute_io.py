@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "AttributeLayout",
+    "add_values",
     "attribute_layouts",
     "is_blended",
     "is_free",
@@ -28,6 +29,7 @@ __all__ = [
     "read_face_materials",
     "read_polygons",
     "read_seams",
+    "read_values",
     "write_attribute",
     "write_corner_normals",
     "write_face_materials",
@@ -113,6 +115,13 @@ def read_attribute(mesh: bpy.types.Mesh, name: str) -> NDArray[Any]:
     return values if width == 1 else values.reshape(-1, width)
 
 
+def read_values(mesh: bpy.types.Mesh, name: str, kind: str) -> NDArray[Any] | None:
+    """Read an attribute of a known type per vertex, (n,) or (n, d); None if there is none such."""
+    attribute: Any = mesh.attributes.get(name)
+    alike = attribute is not None and (attribute.data_type, attribute.domain) == (kind, "POINT")
+    return read_attribute(mesh, name) if alike else None
+
+
 def missing_attribute(mesh: bpy.types.Mesh, layout: AttributeLayout) -> NDArray[Any]:
     """Return what stands for an attribute that a mesh lacks: white as a color, else zeros."""
     held: Any = {"POINT": mesh.vertices, "EDGE": mesh.edges, "FACE": mesh.polygons, "CORNER": mesh.loops}[layout.domain]
@@ -134,6 +143,12 @@ def write_attribute(mesh: bpy.types.Mesh, layout: AttributeLayout, values: NDArr
             setattr(element, member, value)
         return
     data.foreach_set(member, np.ascontiguousarray(values, number).ravel())
+
+
+def add_values(mesh: bpy.types.Mesh, name: str, values: NDArray[Any]) -> None:
+    """Add an attribute with a whole number (n,), a number (n,) or a vector (n, 3) per vertex."""
+    kind = "FLOAT_VECTOR" if values.ndim == 2 else "INT" if np.issubdtype(values.dtype, np.integer) else "FLOAT"
+    write_attribute(mesh, AttributeLayout(name, kind, "POINT"), values)
 
 
 def read_polygons(mesh: bpy.types.Mesh) -> Polygons:

@@ -25,26 +25,17 @@ if TYPE_CHECKING:
 
 __all__ = [
     "add_colors",
-    "add_values",
     "add_vertex_group",
     "corner_vertices",
     "face_corner_counts",
     "position_digest",
     "read_mesh",
-    "read_values",
     "rest_matrix",
     "topology",
     "unedited",
     "vertex_positions",
     "without_other_vertices",
 ]
-
-_MEMBERS: dict[str, tuple[str, type[np.generic], int]] = {
-    "INT": ("value", np.int32, 1),
-    "FLOAT": ("value", np.float32, 1),
-    "FLOAT_VECTOR": ("vector", np.float32, 3),
-}
-"""For each type of attribute with numbers: what its values are called, their number type, and how many there are."""
 
 _topologies: list[dict[int, str]] = []
 """What `topology` has found within each `unedited`, the innermost last."""
@@ -261,23 +252,3 @@ def add_colors(mesh: bpy.types.Mesh, name: str, colors: NDArray[np.float32]) -> 
     """Add a color attribute with a linear colour (n, 4) per vertex."""
     attribute: Any = mesh.attributes.new(name, "FLOAT_COLOR", "POINT")
     attribute.data.foreach_set("color", np.ascontiguousarray(colors, np.float32).ravel())
-
-
-def add_values(mesh: bpy.types.Mesh, name: str, values: NDArray[Any]) -> None:
-    """Add an attribute with a whole number (n,), a number (n,) or a vector (n, 3) per vertex."""
-    kind = "FLOAT_VECTOR" if values.ndim == 2 else "INT" if np.issubdtype(values.dtype, np.integer) else "FLOAT"
-    member, number, _ = _MEMBERS[kind]
-    attributes: Any = mesh.attributes
-    attribute = attributes.new(name, kind, "POINT")
-    attribute.data.foreach_set(member, np.ascontiguousarray(values, number).ravel())
-
-
-def read_values(mesh: bpy.types.Mesh, name: str, kind: str) -> NDArray[Any] | None:
-    """Read an attribute of the type INT, FLOAT (n,) or FLOAT_VECTOR (n, 3) per vertex; None if there is none such."""
-    attribute: Any = mesh.attributes.get(name)
-    if attribute is None or (attribute.data_type, attribute.domain) != (kind, "POINT"):
-        return None
-    member, number, width = _MEMBERS[kind]
-    values = np.empty(len(mesh.vertices) * width, number)
-    attribute.data.foreach_get(member, values)
-    return values if width == 1 else values.reshape(-1, width)

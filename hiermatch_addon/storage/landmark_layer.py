@@ -19,7 +19,7 @@ import numpy as np
 from ..common.access import mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import not_ours
-from ..scene.mesh_io import add_values, read_values
+from ..scene.attribute_io import add_values, read_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

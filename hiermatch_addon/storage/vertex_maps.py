@@ -15,8 +15,8 @@ import numpy as np
 
 from ...engine import ClosestPoints, MeshError, SurfaceMap, SurfacePoints
 from ..common.access import mesh_of
+from ..scene.attribute_io import read_values
 from ..scene.character import parts_of
-from ..scene.mesh_io import read_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -19,7 +19,7 @@ from ...engine import SettingsError
 from ..common.access import group_of, mesh_of
 from ..common.errors import ObjectError
 from ..common.phrases import not_ours
-from ..scene import mesh_io
+from ..scene import attribute_io, mesh_io
 from ..scene.character import forget_order, keep_order, parts_of, vertex_ranges
 
 if TYPE_CHECKING:
@@ -237,7 +237,7 @@ def _add(obj: bpy.types.Object, content: Content) -> None:
     for name, rgba in content.colors.items():
         mesh_io.add_colors(mesh, name + _TEMPORARY, rgba)
     for name, values in content.values.items():
-        mesh_io.add_values(mesh, name + _TEMPORARY, values)
+        attribute_io.add_values(mesh, name + _TEMPORARY, values)
 
 
 def _replace(obj: bpy.types.Object, content: Content, prefix: str, active: _Active) -> None:

@@ -347,7 +347,7 @@ class TestErrors:
         def broken(*_arguments):
             raise ZeroDivisionError("a bug")
 
-        monkeypatch.setattr("hiermatch.hiermatch_addon.scene.mesh_io.add_values", broken)
+        monkeypatch.setattr("hiermatch.hiermatch_addon.scene.attribute_io.add_values", broken)
         before = snapshot()
         with pytest.raises(RuntimeError, match=r"(?s)Traceback.*ZeroDivisionError: a bug"):
             flip()

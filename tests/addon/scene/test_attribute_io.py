@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.scene.attribute_io import (
     AttributeLayout,
+    add_values,
     attribute_layouts,
     is_known,
     read_attribute,
@@ -15,6 +16,7 @@ from hiermatch.hiermatch_addon.scene.attribute_io import (
     read_face_materials,
     read_polygons,
     read_seams,
+    read_values,
     write_attribute,
     write_corner_normals,
     write_face_materials,
@@ -97,6 +99,33 @@ def test_faces_of_a_mirrored_object_are_cut_as_its_mesh():
     faces = read_polygons(obj.data)
     mesh = read_mesh(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False)
     np.testing.assert_array_equal(faces.corner_vertices[faces.cut_as(mesh).triangle_corners], mesh.triangles)
+
+
+@pytest.mark.parametrize(
+    ("kind", "values"),
+    [
+        ("INT", np.arange(254)),
+        ("INT", np.arange(254, dtype=np.int32) + 2**30),
+        ("FLOAT", np.linspace(0, 1, 254)),
+        ("FLOAT_VECTOR", np.linspace(0, 1, 762).reshape(254, 3)),
+    ],
+)
+def test_values_come_back(kind, values):
+    data = add_blob("Blob", 18, 15).data
+    assert len(data.vertices) == 254
+    add_values(data, "Values", values)
+    assert data.attributes["Values"].data_type == kind
+    back = read_values(data, "Values", kind)
+    assert back.shape == values.shape
+    assert back == pytest.approx(values, rel=1e-7)
+    assert read_values(data, "Nothing", kind) is None
+    assert read_values(data, "Values", "FLOAT" if kind == "INT" else "INT") is None
+
+
+def test_values_elsewhere_than_at_vertices_are_not_read():
+    data = add_blob("Blob").data
+    data.attributes.new("Values", "INT", "FACE")
+    assert read_values(data, "Values", "INT") is None
 
 
 def test_seams_materials_and_normals():

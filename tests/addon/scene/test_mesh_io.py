@@ -10,15 +10,14 @@ import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.scene import mesh_io
+from hiermatch.hiermatch_addon.scene.attribute_io import add_values
 from hiermatch.hiermatch_addon.scene.mesh_io import (
     add_colors,
-    add_values,
     add_vertex_group,
     corner_vertices,
     face_corner_counts,
     position_digest,
     read_mesh,
-    read_values,
     topology,
     unedited,
     vertex_positions,
@@ -226,33 +225,6 @@ class TestOwnArrays:
             mesh.flip_normals()
             assert topology(mesh) == before
         assert topology(mesh) != before
-
-
-@pytest.mark.parametrize(
-    ("kind", "values"),
-    [
-        ("INT", np.arange(254)),
-        ("INT", np.arange(254, dtype=np.int32) + 2**30),
-        ("FLOAT", np.linspace(0, 1, 254)),
-        ("FLOAT_VECTOR", np.linspace(0, 1, 762).reshape(254, 3)),
-    ],
-)
-def test_values_come_back(kind, values):
-    data = add_blob("Blob", 18, 15).data
-    assert len(data.vertices) == 254
-    add_values(data, "Values", values)
-    assert data.attributes["Values"].data_type == kind
-    back = read_values(data, "Values", kind)
-    assert back.shape == values.shape
-    assert back == pytest.approx(values, rel=1e-7)
-    assert read_values(data, "Nothing", kind) is None
-    assert read_values(data, "Values", "FLOAT" if kind == "INT" else "INT") is None
-
-
-def test_values_elsewhere_than_at_vertices_are_not_read():
-    data = add_blob("Blob").data
-    data.attributes.new("Values", "INT", "FACE")
-    assert read_values(data, "Values", "INT") is None
 
 
 def test_arrays_arrive_where_they_belong():

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine import MeshError, SurfacePoints, TriangleMesh
-from hiermatch.hiermatch_addon.scene.mesh_io import add_values, read_mesh
+from hiermatch.hiermatch_addon.scene.attribute_io import add_values
+from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.storage.contents import Content
 from hiermatch.hiermatch_addon.storage.vertex_maps import StoredMaps, VertexMap, add_maps, map_name, place_points
 

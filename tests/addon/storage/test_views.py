@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.scene.mesh_io import add_values
+from hiermatch.hiermatch_addon.scene.attribute_io import add_values
 from hiermatch.hiermatch_addon.storage.views.view_colors import check_size, checked, region_colors
 from hiermatch.hiermatch_addon.storage.views.views import VIEW_ITEMS, attribute_of
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.scene import mesh_io
+from hiermatch.hiermatch_addon.scene import attribute_io, mesh_io
 from hiermatch.hiermatch_addon.storage import writing
 from hiermatch.hiermatch_addon.storage.contents import UNREACHED, Content, contents
 from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
@@ -314,7 +314,11 @@ def test_what_the_user_renamed_is_the_users(pair, result):
     assert list(weights_of(pair[0])) == ["Nose"]
 
 
-@pytest.mark.parametrize("step", ["add_vertex_group", "add_colors", "add_values"])
+@pytest.mark.parametrize(
+    "step",
+    [(mesh_io, "add_vertex_group"), (mesh_io, "add_colors"), (attribute_io, "add_values")],
+    ids=lambda one: one[1],
+)
 @pytest.mark.parametrize("earlier", [False, True])
 def test_a_failure_half_way_changes_nothing(pair, result, monkeypatch, step, earlier):
     for obj in pair:
@@ -322,14 +326,14 @@ def test_a_failure_half_way_changes_nothing(pair, result, monkeypatch, step, ear
     if earlier:
         write(pair, made_up_result(*(result_mesh(obj) for obj in pair), points=7, seed=3))
     before = [mesh_snapshot(obj) for obj in pair]
-    real = getattr(mesh_io, step)
+    real = getattr(*step)
 
     def failing(owner, name, *arrays):
         real(owner, name, *arrays)
         if owner.name == "Target":
             raise MemoryError(name)
 
-    monkeypatch.setattr(mesh_io, step, failing)
+    monkeypatch.setattr(*step, failing)
     with pytest.raises(MemoryError):
         write(pair, result)
     assert [mesh_snapshot(obj) for obj in pair] == before

@@ -11,8 +11,8 @@ import pytest
 from hiermatch.engine import SurfaceMap, run
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.jobs.transfer import Passage
+from hiermatch.hiermatch_addon.scene.attribute_io import read_values
 from hiermatch.hiermatch_addon.scene.deform_layer import read_weights, write_weights
-from hiermatch.hiermatch_addon.scene.mesh_io import read_values
 from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
 from hiermatch.hiermatch_addon.transfers.options.weights import WeightOptions, WeightSettings, weight_settings
 from hiermatch.hiermatch_addon.transfers.weight_groups import chosen_groups, deforming_bones, locked_groups
