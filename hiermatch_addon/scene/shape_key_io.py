@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
+import bpy
 import numpy as np
 
 from ..common.access import mesh_of
@@ -16,7 +17,6 @@ from .pair import check_own_mesh
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import bpy
     from numpy.typing import NDArray
 
     from .character import Side
@@ -255,8 +255,7 @@ def key_paths(names: Sequence[str], *, absolute: bool) -> set[str]:
 
 def key_value_path(name: str, member: str = "value") -> str:
     """Return the path from shape keys to something of the key of that name."""
-    escaped = name.replace("\\", "\\\\").replace('"', '\\"')
-    return f'key_blocks["{escaped}"].{member}'
+    return f'key_blocks["{bpy.utils.escape_identifier(name)}"].{member}'
 
 
 def world_matrix(context: bpy.types.Context, obj: bpy.types.Object) -> NDArray[np.float64]:
