@@ -27,6 +27,7 @@ __all__ = [
     "SourceRig",
     "armature_modifier",
     "armature_of",
+    "bone_normals",
     "bone_of",
     "bone_weights",
     "find_armature",
@@ -158,6 +159,12 @@ def read_skeleton(armature: bpy.types.Object, space: NDArray[np.float64] | None 
     return Skeleton(parents, placed(heads), placed(tails))
 
 
+def bone_normals(armature: bpy.types.Object) -> NDArray[np.float64]:
+    """Read the directions of the local z axes of an armature's bones at rest, in world space, (b, 3)."""
+    axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
+    return np.array(axes, np.float64) @ np.array(armature.matrix_world.to_3x3(), np.float64).T
+
+
 def read_rig(side: Side) -> SourceRig | None:
     """Read the rig of a mesh object, or of a character.
 
@@ -172,12 +179,11 @@ def read_rig(side: Side) -> SourceRig | None:
     armature = find_armature(side)
     if armature is None:
         return None
-    bones = armature_of(armature).bones
-    names = tuple(bone.name for bone in bones)
+    names = tuple(bone.name for bone in armature_of(armature).bones)
     weights = bone_weights(side, armature, names)
     if weights.nnz == 0:
         return None
-    return SourceRig(armature.name, tuple(bone.name for bone in bones), read_skeleton(armature), weights)
+    return SourceRig(armature.name, names, read_skeleton(armature), weights)
 
 
 def bone_weights(side: Side, armature: bpy.types.Object, names: Sequence[str]) -> csr_array:

@@ -27,7 +27,7 @@ from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
-from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig, read_skeleton
+from ..scene.armatures import armature_of, bone_normals, find_armature, moving_armatures, read_rig, read_skeleton
 from ..scene.binding import bind, hang_in_place, lost_poses, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_notes
 from ..scene.character import parts_of, read_surface, vertex_ranges
@@ -121,8 +121,7 @@ class MyRigTransfer(Transfer):
         self._deforming = np.array([bone.use_deform for bone in bones], bool)
         if not self._deforming.any():
             self._deforming[:] = True
-        matrix = np.array(armature.matrix_world, np.float64)[:3, :3]
-        self._normals = np.array([bone.matrix_local.to_3x3().col[2] for bone in bones], np.float64) @ matrix.T
+        self._normals = bone_normals(armature)
         stands = [np.array(parts_of(side)[0].matrix_world.to_quaternion().to_matrix()) for side in (source, target)]
         self._frames = np.stack([np.eye(3), stands[1] @ stands[0].T])
         self._space = np.array(parts_of(target)[0].matrix_world, np.float64)

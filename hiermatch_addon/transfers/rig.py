@@ -14,7 +14,7 @@ from ..common.errors import NothingToCarryError, ObjectError
 from ..common.phrases import counted, listed
 from ..jobs.transfer import Transfer, TransferReport
 from ..scene.armature_copy import copy_to, move_joints, repoint
-from ..scene.armatures import armature_of, find_armature, moving_armatures, read_rig
+from ..scene.armatures import bone_normals, find_armature, moving_armatures, read_rig
 from ..scene.binding import bind, hang_in_place, lost_poses, made_rig, mark_made, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_notes
 from ..scene.character import parts_of
@@ -91,8 +91,7 @@ class RigTransfer(Transfer):
                 "fitted."
             )
         self.names = rig.names
-        axes = [bone.matrix_local.to_3x3().col[2] for bone in armature_of(armature).bones]
-        self._normals = np.array(axes, np.float64) @ np.array(armature.matrix_world.to_3x3(), np.float64).T
+        self._normals = bone_normals(armature)
         # The target stands as the source does: in the world, or each in the space of its object.
         stands = [parts_of(side)[0].matrix_world for side in (source, target)]
         turns = [np.array(matrix.to_3x3().normalized(), np.float64) for matrix in stands]

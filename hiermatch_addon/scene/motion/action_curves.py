@@ -20,6 +20,7 @@ __all__ = [
     "actions_of",
     "assign_action",
     "bone_curves",
+    "choose_slot",
     "clips",
     "every_curve",
     "frame_range",
@@ -231,9 +232,14 @@ def assign_action(armature: bpy.types.Object, action: bpy.types.Action) -> None:
     if animation.action is not None and animation.action != action:
         animation.action.use_fake_user = True
     animation.action = action
+    choose_slot(animation, action, armature)
+
+
+def choose_slot(player: Any, action: bpy.types.Action, armature: bpy.types.Object) -> None:  # noqa: ANN401 - of two kinds
+    """Let an object's animation, or a strip, that plays an action play the slot that is meant for an armature."""
     slot = slot_for(action, armature)
     if slot is not None:
-        animation.action_slot = slot
+        player.action_slot = slot
 
 
 class CurveMaker:

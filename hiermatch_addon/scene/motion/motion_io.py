@@ -15,10 +15,10 @@ from .action_curves import (
     CurveMaker,
     assign_action,
     bone_curves,
+    choose_slot,
     object_curves,
     played_action,
     rotation_channel,
-    slot_for,
 )
 from .carried_action_io import mark_carried, to_be_replaced, was_carried
 from .holders import acts, is_carried
@@ -193,14 +193,12 @@ def evaluated_frames(
     places : (f, 4, 4) array of float
         Where the object is in the world, as large as it is now.
     """
-    slot = slot_for(action, armature)
     posed, places = np.empty((len(frames), len(armature_of(armature).bones), 4, 4)), np.empty((len(frames), 4, 4))
     size = armature.matrix_world.to_scale()
     with own_scene(armature) as alone:
         animation = cast("Any", alone.armature.animation_data)
         animation.action = action
-        if slot is not None:
-            animation.action_slot = slot
+        choose_slot(animation, action, armature)
         for number, frame in enumerate(frames):
             alone.go_to(frame)
             posed[number] = alone.matrices()

@@ -6,7 +6,7 @@ from __future__ import annotations
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from .action_curves import clips, slot_for
+from .action_curves import choose_slot, clips
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -60,9 +60,7 @@ def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> No
         track = animation.nla_tracks.new()
         track.name = action.name
         strip = track.strips.new(action.name, int(action.frame_range[0]), action)
-        slot = slot_for(action, rig)
-        if slot is not None:
-            strip.action_slot = slot
+        choose_slot(strip, action, rig)
 
 
 def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> list[str]:
@@ -112,9 +110,7 @@ def _copy_strip(strip: Any, track: Any, action: bpy.types.Action, target: bpy.ty
     """Put a strip that plays an action of the target as another one plays its own at the end of a track."""
     free = max([strip.frame_start, *(one.frame_end for one in track.strips)])
     new = track.strips.new(strip.name, ceil(free), action)  # which can be done at whole frames only
-    slot = slot_for(action, target)
-    if slot is not None:
-        new.action_slot = slot
+    choose_slot(new, action, target)
     for name in _STRIP:
         setattr(new, name, getattr(strip, name))
     new.frame_start, new.frame_end = strip.frame_start, strip.frame_end
