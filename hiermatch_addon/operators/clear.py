@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ...engine import HierMatchError
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
@@ -19,6 +18,7 @@ from ..scene.character import parts_of, side_of
 from ..scene.pair import check_writable, named_side, selected_meshes
 from ..storage.linked_matches import forget_linked, has_linked, linked_prefixes
 from ..storage.writing import clear, is_marked, kept, prefixes
+from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -59,14 +59,11 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
             return False
         return True
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Remove it."""
-        try:
-            carriers = [obj for obj in self._objects(context) if self._prefixes(obj) or self._linked(obj)]
-            objects, reasons = _writable(carriers)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        carriers = [obj for obj in self._objects(context) if self._prefixes(obj) or self._linked(obj)]
+        objects, reasons = _writable(carriers)
         if not objects:
             self.report({"WARNING"}, translated("None of these objects carries anything that HierMatch has written."))
             return {"CANCELLED"}

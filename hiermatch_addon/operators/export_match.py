@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from ...engine import HierMatchError
 from ..common.access import view_layer_of
 from ..common.translated_text import translated
 from ..jobs.running import can_start
@@ -19,6 +18,7 @@ from ..scene.pair import find_pair, selected_meshes
 from ..storage.halves import find_keyed
 from ..storage.match_exchange import collect_match
 from ..storage.match_file import save_match
+from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -75,15 +75,12 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
         """Allow it in Object Mode, when nothing else is running."""
         return can_start(cls, context)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Read the match and write the file."""
         path = Path(bpy.path.abspath(self.filepath))
-        try:
-            source, target, prefix = self._match(context)
-            save_match(collect_match(source, target, prefix), path)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        source, target, prefix = self._match(context)
+        save_match(collect_match(source, target, prefix), path)
         self.report({"INFO"}, translated(f'Exported the match of "{source.name}" and "{target.name}" to "{path.name}"'))
         return {"FINISHED"}
 

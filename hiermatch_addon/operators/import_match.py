@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, cast
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
-from ...engine import HierMatchError
 from ..common.translated_text import translated
 from ..jobs.running import can_start
 from ..properties.freshness import refresh
@@ -20,6 +19,7 @@ from ..scene.pair import find_pair
 from ..storage.match_exchange import apply_match
 from ..storage.match_file import load_match
 from ..storage.writing import LONGEST_PREFIX
+from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -71,16 +71,13 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
         """Allow it in Object Mode, when nothing else is running."""
         return can_start(cls, context)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Read the file and write on both objects."""
         state = state_of(context)
         path = Path(bpy.path.abspath(self.filepath))
-        try:
-            source, target = find_pair(context, (self.source, self.target), picked(state))
-            stored = apply_match(context, source, target, load_match(path), self.prefix)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        source, target = find_pair(context, (self.source, self.target), picked(state))
+        stored = apply_match(context, source, target, load_match(path), self.prefix)
         remember(state.summary, stored, stored.names, self.prefix, 0.0)
         refresh(cast("bpy.types.Scene", context.scene))
         self.report(

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...engine import HierMatchError
 from ..common.access import view_layer_of, window_manager_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..properties.panel_state import picked, state_of
 from ..scene.character import side_of
 from ..scene.pair import active_side, left_out_note, named_side, selected_targets
+from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -68,14 +68,10 @@ class PairOperator(_Operator):
         """Find the two sides, or the armatures that they mean, and make sure that it can be done with them."""
         raise NotImplementedError
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Do it, and report."""
-        try:
-            sides = self._sides(context)
-            done = self._do(context, *sides)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        done = self._do(context, *self._sides(context))
         if done:
             self.report({"INFO"}, translated(done))
         return {"FINISHED"}

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...engine import HierMatchError
 from ..common.access import mesh_of, window_manager_of
 from ..common.errors import ObjectError
 from ..common.redraw import redraw_views
@@ -21,6 +20,7 @@ from ..properties.viewport_shading import shade_as_before, shade_by_colors
 from ..scene.character import parts_of
 from ..scene.pair import check_mode, check_writable
 from ..storage.views.views import VIEW_ITEMS, attribute_of, prepare_view, region_groups, show_attribute
+from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -73,17 +73,14 @@ class HIERMATCH_OT_show(bpy.types.Operator):
         """Allow it in Object Mode and Pose Mode, when nothing else is running."""
         return can_start(cls, context, posing=True)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Show it, and remember what was shown before."""
-        try:
-            if self.view == "NONE":
-                if not _go_back(context):
-                    return {"CANCELLED"}  # else it would be a step to undo, and what was undone could not be redone
-            else:
-                _show(context, _match_of(context), self.view)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        if self.view == "NONE":
+            if not _go_back(context):
+                return {"CANCELLED"}  # else it would be a step to undo, and what was undone could not be redone
+        else:
+            _show(context, _match_of(context), self.view)
         redraw_views(window_manager_of(context))
         return {"FINISHED"}
 
@@ -104,13 +101,10 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
         """Allow it in Object Mode, when nothing else is running."""
         return can_start(cls, context)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Write them."""
-        try:
-            count = region_groups(context, _match_of(context))
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        count = region_groups(context, _match_of(context))
         self.report({"INFO"}, translated(f"Wrote {count} regions on both meshes as vertex groups"))
         return {"FINISHED"}
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ....engine import HierMatchError
 from ...common.access import view_layer_of
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
@@ -18,6 +17,7 @@ from ...scene.character import parts_of, side_of
 from ...scene.pair import check_writable, named_side
 from ...scene.posing.before_after import is_before, show_after, show_before
 from ...transfers.retarget_properties import retarget_of
+from ..reported_errors import reporting_errors
 from .rig_operator import meant_target
 
 if TYPE_CHECKING:
@@ -51,24 +51,20 @@ class HIERMATCH_OT_before_after(bpy.types.Operator):
         """Allow it in Object Mode, while posing and while painting weights, when nothing else is running."""
         return can_start(cls, context, posing=True, painting=True)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Go from one to the other."""
-        try:
-            target = meant_target(context, self.target)
-            for part in parts_of(target):
-                check_writable(part)
-            if is_before(target):
-                show_after(target)
-                self.report({"INFO"}, translated(f'"{target.name}" is shown as it is'))
-                return {"FINISHED"}
-            if not show_before(target, _source_of(context)):
-                raise ObjectError(
-                    f'"{target.name}" has no rig, shape keys or clothes that came from a source, so it is as it was '
-                    "before."
-                )
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        target = meant_target(context, self.target)
+        for part in parts_of(target):
+            check_writable(part)
+        if is_before(target):
+            show_after(target)
+            self.report({"INFO"}, translated(f'"{target.name}" is shown as it is'))
+            return {"FINISHED"}
+        if not show_before(target, _source_of(context)):
+            raise ObjectError(
+                f'"{target.name}" has no rig, shape keys or clothes that came from a source, so it is as it was before.'
+            )
         self.report({"INFO"}, translated(f'"{target.name}" is shown as it was before'))
         return {"FINISHED"}
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, cast
 
 import bpy
 
-from ....engine import HierMatchError
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.running import can_start
 from ...scene.posing.exercise import begin_exercise, bending_bones, end_exercise, is_exercising
+from ..reported_errors import reporting_errors
 from .rig_operator import meant_armature
 
 if TYPE_CHECKING:
@@ -48,20 +48,17 @@ class HIERMATCH_OT_test_poses(bpy.types.Operator):
         """Allow it in Object Mode, while posing and while painting weights, when nothing else is running."""
         return can_start(cls, context, posing=True, painting=True)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Make them, or take them away."""
-        try:
-            armature = meant_armature(context, self.target)
-            if self.remove or is_exercising(armature):
-                end_exercise(armature)
-                self.report({"INFO"}, translated(f'The test poses of "{armature.name}" are gone'))
-                return {"FINISHED"}
-            bones = bending_bones(armature)
-            if not bones:
-                raise ObjectError(f'No bone of "{armature.name}" moves a mesh. Transfer the weights first.')
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        armature = meant_armature(context, self.target)
+        if self.remove or is_exercising(armature):
+            end_exercise(armature)
+            self.report({"INFO"}, translated(f'The test poses of "{armature.name}" are gone'))
+            return {"FINISHED"}
+        bones = bending_bones(armature)
+        if not bones:
+            raise ObjectError(f'No bone of "{armature.name}" moves a mesh. Transfer the weights first.')
         last = begin_exercise(cast("bpy.types.Scene", context.scene), armature, bones)
         joints = counted(len(bones), "bone")
         self.report(

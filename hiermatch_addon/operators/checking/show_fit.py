@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ....engine import HierMatchError
 from ...common.access import mesh_of, view_layer_of, window_manager_of
 from ...common.errors import ObjectError
 from ...common.redraw import redraw_views
-from ...common.translated_text import translated
 from ...jobs.running import can_start
 from ...scene.pair import check_writable
 from ...transfers.wearing.fit_colors import FIT_ITEMS, FIT_NAMES, carriers_of_fit
+from ..reported_errors import reporting_errors
 from ..show import show_colors
 
 if TYPE_CHECKING:
@@ -44,17 +43,14 @@ class HIERMATCH_OT_show_fit(bpy.types.Operator):
         """Allow it in Object Mode and Pose Mode, when nothing else is running."""
         return can_start(cls, context, posing=True)
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Show it on all that carries it; Nothing of Show brings back what was shown before."""
-        try:
-            items = carriers_of_fit(view_layer_of(context))
-            if not items:
-                raise ObjectError("Nothing here carries the colors of a fit. Press Wear with Show Fit on.")
-            for item in items:
-                check_writable(item)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        items = carriers_of_fit(view_layer_of(context))
+        if not items:
+            raise ObjectError("Nothing here carries the colors of a fit. Press Wear with Show Fit on.")
+        for item in items:
+            check_writable(item)
         show_colors(context, dict.fromkeys(map(mesh_of, items), FIT_NAMES[self.view]))
         redraw_views(window_manager_of(context))
         return {"FINISHED"}

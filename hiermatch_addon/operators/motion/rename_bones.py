@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ....engine import HierMatchError
 from ...common.access import layout_of, window_manager_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted
@@ -18,6 +17,7 @@ from ...scene.motion.rigs import check_armature, rig_of
 from ...transfers.motion.bone_names import names_by_source, names_by_table, rename_bones
 from ..checking.rig_operator import meant_target
 from ..pair_operator import pick_sides
+from ..reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -96,23 +96,20 @@ class HIERMATCH_OT_rename_bones(bpy.types.Operator):
         if self.names != "SOURCE":
             layout.prop(self, "known")
 
+    @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Rename, and report."""
         scene = cast("bpy.types.Scene", context.scene)
-        try:
-            if self.names == "SOURCE":
-                source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])
-                armature = rig_of(targets[0])
-                names = names_by_source(scene, rig_of(source), armature)
-            else:
-                armature = rig_of(meant_target(context, self.target))
-                names = names_by_table(armature, self.known, self.names)
-            check_armature(armature, written=False)
-            self._check_own(armature)
-            count = rename_bones(scene, armature, names)
-        except HierMatchError as error:
-            self.report({"ERROR"}, translated(str(error)))
-            return {"CANCELLED"}
+        if self.names == "SOURCE":
+            source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])
+            armature = rig_of(targets[0])
+            names = names_by_source(scene, rig_of(source), armature)
+        else:
+            armature = rig_of(meant_target(context, self.target))
+            names = names_by_table(armature, self.known, self.names)
+        check_armature(armature, written=False)
+        self._check_own(armature)
+        count = rename_bones(scene, armature, names)
         kept = len(cast("bpy.types.Armature", armature.data).bones) - len(names)
         self.report({"INFO"}, translated(f'{counted(count, "bone")} of "{armature.name}" got another name'))
         if kept:
