@@ -7,7 +7,6 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-import bpy
 import numpy as np
 from scipy.sparse import csr_array
 
@@ -20,6 +19,7 @@ from ..jobs.stepped_job import SteppedJob
 from ..jobs.transfer import TransferReport
 from ..jobs.verdict import asymmetry_note
 from ..scene.attribute_io import attribute_layouts, read_attribute, write_attribute
+from ..scene.character import SideReference
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
 from ..scene.mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
 from ..scene.pair import check_object
@@ -40,6 +40,7 @@ from .wrap import wrap_key_name
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import bpy
     from numpy.typing import NDArray
 
     from ...engine import Steps
@@ -79,7 +80,7 @@ class SymmetriseJob(SteppedJob):
         self._start = time.perf_counter()
         check_object(view_layer_of(context), obj)
         check_weights_writable(obj)
-        self._uid, self._name, self._state = obj.session_uid, obj.name, _state(obj)
+        self._link, self._state = SideReference.of(obj), _state(obj)
         self._parts: list[_Weights | _Keys | _Colors] = []
         if settings.weights:
             self._parts.append(_Weights(obj, create=settings.create))
@@ -121,7 +122,7 @@ class SymmetriseJob(SteppedJob):
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
         self.found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
-        self._notes.append(asymmetry_note(self._name, self.found.quality))
+        self._notes.append(asymmetry_note(self._link.name, self.found.quality))
         yield Progress(0.9, "Telling the sides apart")
         telling = called_steps(Symmetriser.of, self._mesh, self.found.source_to_target, self._hints)
         symmetriser = yield from within(telling, 0.9, 0.95)
@@ -132,10 +133,10 @@ class SymmetriseJob(SteppedJob):
 
     def _object(self) -> bpy.types.Object:
         """Look the object up again."""
-        for obj in bpy.data.objects:
-            if obj.session_uid == self._uid:
-                return obj
-        raise ObjectError(f'"{self._name}" was deleted meanwhile. Nothing was written.')
+        obj = self._link.find()
+        if obj is None:
+            raise ObjectError(f'"{self._link.name}" was deleted meanwhile. Nothing was written.')
+        return cast("bpy.types.Object", obj)
 
 
 class _Weights:

@@ -15,6 +15,7 @@ from ..common.errors import ObjectError
 from ..common.phrases import counted, listed
 from ..common.side_names import flipped_name
 from ..jobs.transfer import Transfer, TransferReport
+from ..scene.attribute_io import AttributeLayout, is_free
 from ..scene.character import parts_of, vertex_ranges
 from ..scene.deform_layer import check_weights_writable, read_group
 from ..storage import writing
@@ -72,7 +73,7 @@ class WeightTransfer(Transfer):
 
     def __init__(self, settings: WeightSettings) -> None:
         self._settings = settings
-        self._task: _Task | None = None
+        self._task: _Task
         self._result: csr_array = csr_array((0, 0))
         self._torn: NDArray[np.bool_] = np.zeros(0, bool)
         self._pieces: NDArray[np.int8] | None = None
@@ -105,7 +106,7 @@ class WeightTransfer(Transfer):
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the weights of the target."""
-        task, settings = self._read_task, self._settings
+        task, settings = self._task, self._settings
         carried = yield from carry_weights_steps(
             task.source_weights,
             passage.pair.source,
@@ -136,7 +137,7 @@ class WeightTransfer(Transfer):
         """Write the groups."""
         if self._settings.mark:
             self._check_mark(target)
-        columns, names = self._read_task.columns, self._read_task.names
+        columns, names = self._task.columns, self._task.names
         written = ~columns.locked & (columns.new | (columns.shared & columns.yielding & self._settings.normalise))
         numbers = np.flatnonzero(written)
         result = self._result.tocsr()[:, numbers]
@@ -146,8 +147,8 @@ class WeightTransfer(Transfer):
             self._add_other_sides(source, part)
         if self._settings.mark:
             self._write_mark(target)
-        had, has = ((abs(weights).sum(axis=0) > 0) for weights in (self._read_task.before, self._result))
-        if emptied := [names[number] for number in np.flatnonzero(~self._read_task.chosen & columns.new & had & ~has)]:
+        had, has = ((abs(weights).sum(axis=0) > 0) for weights in (self._task.before, self._result))
+        if emptied := [names[number] for number in np.flatnonzero(~self._task.chosen & columns.new & had & ~has)]:
             self._notes.append(
                 f'Vertex groups of "{target.name}" for bones that move nothing of "{source.name}" were emptied: '
                 f"{listed(emptied)}."
@@ -161,14 +162,8 @@ class WeightTransfer(Transfer):
                 f'them astray, far from these on "{source.name}".'
             )
         return TransferReport(
-            counted(int((self._read_task.chosen & ~columns.locked).sum()), "vertex group"), tuple(self._notes)
+            counted(int((self._task.chosen & ~columns.locked).sum()), "vertex group"), tuple(self._notes)
         )
-
-    @property
-    def _read_task(self) -> _Task:
-        if self._task is None:
-            raise RuntimeError("Nothing was read yet.")
-        return self._task
 
     def _make_task(self, source: Side, target: Side, chosen: list[str], locked: set[str]) -> _Task:
         """Find out what is what among all groups that matter.
@@ -200,7 +195,7 @@ class WeightTransfer(Transfer):
     def _add_other_sides(self, source: Side, target: bpy.types.Object) -> None:
         """Add the empty groups of the other side that the source has, for whoever mirrors the target."""
         present = {group.name for part in parts_of(source) for group in part.vertex_groups}
-        for name in self._read_task.names:
+        for name in self._task.names:
             other = flipped_name(name)
             if name in target.vertex_groups and other in present and other not in target.vertex_groups:
                 active = target.vertex_groups.active_index
@@ -220,9 +215,7 @@ class WeightTransfer(Transfer):
             If something else has its name.
         """
         for part in parts_of(target):
-            attribute = mesh_of(part).attributes.get(self._mark_name)
-            alike = attribute is None or (attribute.data_type, attribute.domain) == ("FLOAT_COLOR", "POINT")
-            if not alike or self._mark_name in part.vertex_groups:
+            if not is_free(part, AttributeLayout(self._mark_name, "FLOAT_COLOR", "POINT")):
                 raise ObjectError(
                     f'"{part.name}" already has something else called "{self._mark_name}". Rename it, or turn Mark '
                     "Rejected off."

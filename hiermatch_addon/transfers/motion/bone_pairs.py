@@ -91,7 +91,7 @@ class BonePairTransfer(Transfer):
 
     def __init__(self) -> None:
         self.pairing: BonePairing | None = None
-        self._task: _Task | None = None
+        self._task: _Task
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read the target's rig, and what is held of the pairs that are there."""
@@ -115,7 +115,7 @@ class BonePairTransfer(Transfer):
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compare the bones."""
-        task = self._read_task
+        task = self._task
         if passage.rig is None:
             raise RuntimeError("The rig was not fitted.")
         yield Progress(0.0, "Pairing bones")
@@ -139,7 +139,7 @@ class BonePairTransfer(Transfer):
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the table of pairs."""
         rigs = two_rigs(source, target, written=False)
-        for rig, names in zip(rigs, self._read_task.names, strict=True):
+        for rig, names in zip(rigs, self._task.names, strict=True):
             if tuple(bone.name for bone in armature_of(rig).bones) != names:
                 raise ObjectError(f'The bones of "{rig.name}" were changed meanwhile. Nothing was written.')
         pairing = cast("BonePairing", self.pairing)
@@ -149,7 +149,7 @@ class BonePairTransfer(Transfer):
 
     def _notes(self, pairing: BonePairing) -> tuple[str, ...]:
         """Say what is to be known: names of sides that contradict."""
-        task = self._read_task
+        task = self._task
         sides = [
             side_of(task.names[0][source]) * side_of(task.names[1][target])
             for source, target in zip(pairing.sources, pairing.targets, strict=True)
@@ -162,9 +162,3 @@ class BonePairTransfer(Transfer):
             "match, and pair the bones again."
         )
         return (said,)
-
-    @property
-    def _read_task(self) -> _Task:
-        if self._task is None:
-            raise RuntimeError("Nothing was read yet.")
-        return self._task

@@ -58,7 +58,7 @@ class PairedWeightTransfer(Transfer):
 
     def __init__(self, limit: int) -> None:
         self._limit = limit
-        self._task: _Task | None = None
+        self._task: _Task
         self._result: csr_array = csr_array((0, 0))
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
@@ -91,7 +91,7 @@ class PairedWeightTransfer(Transfer):
 
     def steps(self, passage: Passage) -> Steps[None]:
         """Compute the weights of the target."""
-        task = self._read_task
+        task = self._task
         carried = yield from carry_weights_steps(
             task.rig.weights, passage.pair.source, passage.pair.target, passage.pair.target_to_source
         )
@@ -101,7 +101,7 @@ class PairedWeightTransfer(Transfer):
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the groups of the target's bones."""
-        task = self._read_task
+        task = self._task
         written = task.columns.new & ~task.columns.locked
         used = (self._result != 0).sum(axis=0) > 0
         present = {group.name for part in parts_of(target) for group in part.vertex_groups}
@@ -113,9 +113,3 @@ class PairedWeightTransfer(Transfer):
         notes = [f'Locked vertex groups of "{target.name}" were left alone: {listed(held)}.'] if held else []
         notes += pairing_notes(cast("bpy.types.Scene", context.scene), rig_of(source), rig_of(target))
         return TransferReport(counted(len(numbers), "vertex group"), tuple(notes))
-
-    @property
-    def _read_task(self) -> _Task:
-        if self._task is None:
-            raise RuntimeError("Nothing was read yet.")
-        return self._task
