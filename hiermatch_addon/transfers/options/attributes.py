@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from .plain_settings import names_in, settings_of
+
 __all__ = ["AttributeOptions", "AttributeSettings", "attribute_settings"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -91,25 +93,9 @@ class AttributeOptions:
     }
 
     if TYPE_CHECKING:
-        attribute_colors: bool
-        attribute_values: bool
         attribute_names: str
-        attribute_materials: bool
-        attribute_sharp: bool
-        attribute_seams: bool
-        attribute_creases: bool
-        attribute_normals: bool
 
 
 def attribute_settings(options: AttributeOptions) -> AttributeSettings:
     """Make the settings of the options."""
-    return AttributeSettings(
-        options.attribute_colors,
-        options.attribute_values,
-        tuple(name.strip() for name in options.attribute_names.split(",") if name.strip()),
-        options.attribute_materials,
-        options.attribute_sharp,
-        options.attribute_seams,
-        options.attribute_creases,
-        options.attribute_normals,
-    )
+    return settings_of(AttributeSettings, options, "attribute_", names=names_in(options.attribute_names))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import bpy
 
 from ...common.access import view_layer_of
+from .plain_settings import settings_of
 
 __all__ = ["MyRigOptions", "MyRigSettings", "my_rig_settings"]
 
@@ -66,9 +67,8 @@ class MyRigOptions:
     if TYPE_CHECKING:
         rig: str
         my_rig_bind: bool
-        my_rig_limit: int
 
 
 def my_rig_settings(options: MyRigOptions) -> MyRigSettings:
     """Make the settings of the options."""
-    return MyRigSettings(options.rig, options.my_rig_bind, options.my_rig_limit)
+    return settings_of(MyRigSettings, options, "my_rig_", name=options.rig)

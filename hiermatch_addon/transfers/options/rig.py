@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from .plain_settings import settings_of
+
 __all__ = ["RigOptions", "RigSettings", "rig_settings"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -102,23 +104,9 @@ class RigOptions:
     }
 
     if TYPE_CHECKING:
-        rig_existing: str
-        rig_replace: bool
-        rig_bind: bool
         rest_pose_like_source: str
-        rig_rest: bool
-        rig_rest_shown: bool
-        rig_pose: str
 
 
 def rig_settings(options: RigOptions) -> RigSettings:
     """Make the settings of the options."""
-    return RigSettings(
-        options.rig_existing,
-        options.rig_replace,
-        options.rig_bind,
-        options.rig_rest,
-        options.rig_rest_shown,
-        options.rig_pose,
-        options.rest_pose_like_source,
-    )
+    return settings_of(RigSettings, options, "rig_", like_source=options.rest_pose_like_source)

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from .plain_settings import names_in, settings_of
+
 if TYPE_CHECKING:
     from ....engine import Scaling
 
@@ -117,24 +119,11 @@ class ShapeKeyOptions:
     }
 
     if TYPE_CHECKING:
-        key_choice: str
         key_names: str
-        key_existing: str
         key_scaling: str
-        key_threshold: float
-        key_drivers: bool
-        key_action: bool
 
 
 def shape_key_settings(options: ShapeKeyOptions) -> ShapeKeySettings:
     """Make the settings of the options."""
-    names = tuple(dict.fromkeys(name.strip() for name in options.key_names.split(",") if name.strip()))
-    return ShapeKeySettings(
-        choice=options.key_choice,
-        names=names,
-        existing=options.key_existing,
-        scaling=_SCALINGS[options.key_scaling],
-        threshold=options.key_threshold,
-        drivers=options.key_drivers,
-        action=options.key_action,
-    )
+    names, scaling = names_in(options.key_names), _SCALINGS[options.key_scaling]
+    return settings_of(ShapeKeySettings, options, "key_", names=names, scaling=scaling)

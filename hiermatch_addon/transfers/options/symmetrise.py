@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
+
+from .plain_settings import settings_of
 
 __all__ = ["SymmetriseOptions", "SymmetriseSettings", "symmetrise_settings"]
 
@@ -66,20 +68,7 @@ class SymmetriseOptions:
         ),
     }
 
-    if TYPE_CHECKING:
-        symmetrise_side: str
-        symmetrise_weights: bool
-        symmetrise_keys: bool
-        symmetrise_colors: bool
-        symmetrise_create: bool
-
 
 def symmetrise_settings(options: SymmetriseOptions) -> SymmetriseSettings:
     """Make the settings of the options."""
-    return SymmetriseSettings(
-        options.symmetrise_side,
-        options.symmetrise_weights,
-        options.symmetrise_keys,
-        options.symmetrise_colors,
-        options.symmetrise_create,
-    )
+    return settings_of(SymmetriseSettings, options, "symmetrise_")

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from .plain_settings import names_in, settings_of
+
 __all__ = ["UVOptions", "UVSettings", "uv_settings"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -61,10 +63,8 @@ class UVOptions:
     if TYPE_CHECKING:
         uv_layers: str
         uv_names: str
-        uv_seams: bool
 
 
 def uv_settings(options: UVOptions) -> UVSettings:
     """Make the settings of the options."""
-    names = tuple(name.strip() for name in options.uv_names.split(",") if name.strip())
-    return UVSettings(options.uv_layers, names, options.uv_seams)
+    return settings_of(UVSettings, options, "uv_", choice=options.uv_layers, names=names_in(options.uv_names))

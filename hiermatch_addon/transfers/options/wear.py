@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
+
+from .plain_settings import settings_of
 
 __all__ = ["FITS", "HIERMATCH_PG_worn", "WearOptions", "WearSettings", "wear_settings"]
 
@@ -159,31 +161,7 @@ class WearOptions:
         ),
     }
 
-    if TYPE_CHECKING:
-        wear_result: str
-        wear_clearance: float
-        wear_weights: str
-        wear_limit: int
-        wear_normalise: bool
-        wear_poses: bool
-        wear_keys: bool
-        wear_fit_rig: bool
-        wear_hide: str
-        wear_colors: bool
-
 
 def wear_settings(options: WearOptions, items: tuple[str, ...]) -> WearSettings:
     """Make the settings of the options for some items, given by name."""
-    return WearSettings(
-        items=items,
-        result=options.wear_result,
-        clearance=options.wear_clearance,
-        weights=options.wear_weights,
-        limit=options.wear_limit,
-        normalise=options.wear_normalise,
-        fit_rig=options.wear_fit_rig,
-        hide=options.wear_hide,
-        colors=options.wear_colors,
-        poses=options.wear_poses,
-        keys=options.wear_keys,
-    )
+    return settings_of(WearSettings, options, "wear_", items=items)

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
+
+from .plain_settings import settings_of
 
 __all__ = ["WeightOptions", "WeightSettings", "weight_settings"]
 
@@ -151,33 +153,7 @@ class WeightOptions:
         ),
     }
 
-    if TYPE_CHECKING:
-        weight_groups: str
-        weight_mode: str
-        weight_mix: float
-        weight_normalise: bool
-        weight_limit: int
-        weight_clean: float
-        weight_fill: bool
-        weight_alone: str
-        weight_rigid: bool
-        weight_rigid_group: str
-        weight_mark: bool
-
 
 def weight_settings(options: WeightOptions, prefix: str = "") -> WeightSettings:
     """Make the settings of the options; `prefix` is that of the match, if it is known."""
-    return WeightSettings(
-        groups=options.weight_groups,
-        mode=options.weight_mode,
-        mix=options.weight_mix,
-        normalise=options.weight_normalise,
-        limit=options.weight_limit,
-        clean=options.weight_clean,
-        fill=options.weight_fill,
-        alone=options.weight_alone,
-        rigid=options.weight_rigid,
-        rigid_group=options.weight_rigid_group,
-        mark=options.weight_mark,
-        prefix=prefix or WeightSettings.prefix,
-    )
+    return settings_of(WeightSettings, options, "weight_", prefix=prefix or WeightSettings.prefix)

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
+
+from .plain_settings import settings_of
 
 __all__ = ["WrapOptions", "WrapSettings", "wrap_settings"]
 
@@ -76,13 +78,7 @@ class WrapOptions:
         ),
     }
 
-    if TYPE_CHECKING:
-        wrap_moved: str
-        wrap_result: str
-        wrap_place: str
-        wrap_in_betweens: int
-
 
 def wrap_settings(options: WrapOptions) -> WrapSettings:
     """Make the settings of the options."""
-    return WrapSettings(options.wrap_moved, options.wrap_result, options.wrap_place, options.wrap_in_betweens)
+    return settings_of(WrapSettings, options, "wrap_")
