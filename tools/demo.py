@@ -112,7 +112,7 @@ def match_pair(points: int, display: Display) -> tuple[bpy.types.Object, bpy.typ
 
 def take_picture(source: bpy.types.Object, target: bpy.types.Object, path: Path, width: int, samples: int) -> None:
     """Paint the match, set the stage and render it."""
-    truth = module("hiermatch_addon.demo.demo_truth")
+    truth = importlib.import_module("demo_truth")
     for cat in (source, target):
         paint(cat, "HM Match", whitened=_WHITENED)
     places = truth.written_places(source, "HM")
@@ -174,7 +174,7 @@ def run_demo(output: Path, points: int, width: int, samples: int) -> None:
     source, target, outcome = match_pair(points, display)
     display.stage("Measuring against the truth")
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    direct, mirrored = module("hiermatch_addon.demo.demo_truth").match_errors(source, target, depsgraph)
+    direct, mirrored = importlib.import_module("demo_truth").match_errors(source, target, depsgraph)
     display.stage(f"Rendering {width} x {width * 9 // 16} pixels")
     take_picture(source, target, picture, width, samples)
     bpy.ops.wm.save_as_mainfile(filepath=str(blend), check_existing=False)

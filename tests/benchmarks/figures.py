@@ -30,10 +30,10 @@ registered_extension()
 from hiermatch.engine import Level, MatchSettings, Shape, SurfacePoints, TriangleMesh, match  # noqa: E402
 from hiermatch.engine.geometry.geodesics import GeodesicSolver  # noqa: E402
 from hiermatch.engine.hierarchical.settings import SETUPS  # noqa: E402
-from hiermatch.hiermatch_addon.demo import demo_truth  # noqa: E402
 from hiermatch.hiermatch_addon.scene import mesh_io  # noqa: E402
 
 from tests.benchmarks.real_pairs import add_object, known  # noqa: E402
+from tools import demo_truth  # noqa: E402
 from tools.demo_picture import add_beads, add_lines, paint_plain, render, set_stage, sheet  # noqa: E402
 
 LEVELS = (10, 20, 40, 64)

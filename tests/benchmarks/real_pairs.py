@@ -33,7 +33,8 @@ from tools.source_extension import registered_extension
 registered_extension()
 
 from hiermatch.engine.hierarchical.settings import SETUPS  # noqa: E402
-from hiermatch.hiermatch_addon.demo import demo_truth  # noqa: E402
+
+from tools import demo_truth  # noqa: E402
 
 PAIRS = "cat0:cat1,dog0:dog5,michael0:michael3"
 

@@ -22,9 +22,10 @@ def bpy():
 @pytest.mark.slow
 def test_a_match_is_kept_used_and_told_to_be_out_of_date(bpy, tmp_path):
     from hiermatch.hiermatch_addon.common.errors import ObjectError
-    from hiermatch.hiermatch_addon.demo import demo_truth
     from hiermatch.hiermatch_addon.properties import freshness
     from hiermatch.hiermatch_addon.storage.stored_map import stored_map
+
+    from tools import demo_truth
 
     def pair():
         state = bpy.context.scene.hiermatch

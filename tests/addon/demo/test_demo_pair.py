@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 from hiermatch.engine import TriangleMesh
 from hiermatch.engine.geometry.geodesics import GeodesicSolver
-from hiermatch.hiermatch_addon.demo import demo_pair, demo_store, demo_truth
+from hiermatch.hiermatch_addon.demo import demo_pair, demo_store
 from hiermatch.hiermatch_addon.demo.demo_rig import LEAST_WEIGHT
 from hiermatch.hiermatch_addon.scene.mesh_io import add_vertex_group, read_mesh
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
+
+from tools import demo_truth
 
 SMALL = {"source_vertices": 1500, "target_vertices": 1000}
 

@@ -11,9 +11,9 @@ import sys
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.demo import demo_truth
 
 from tests.addon.conftest import ROOT
+from tools import demo_truth
 
 
 def run_demo(*arguments):

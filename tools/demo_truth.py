@@ -7,12 +7,11 @@ import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from hiermatch.engine import GeodesicSolver, TriangleMesh  # see `source_extension`
+from hiermatch.hiermatch_addon.common.access import mesh_of
+from hiermatch.hiermatch_addon.demo.demo_pair import REST_ATTRIBUTE
+from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from mathutils.bvhtree import BVHTree
-
-from ...engine import GeodesicSolver, TriangleMesh
-from ..common.access import mesh_of
-from ..scene.mesh_io import read_mesh
-from .demo_pair import REST_ATTRIBUTE
 
 if TYPE_CHECKING:
     import bpy
