@@ -15,7 +15,15 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["group_of", "layout_of", "mesh_of", "open_collections", "view_layer_of", "window_manager_of"]
+__all__ = [
+    "group_of",
+    "layout_of",
+    "mesh_of",
+    "open_collections",
+    "options_layout",
+    "view_layer_of",
+    "window_manager_of",
+]
 
 
 def view_layer_of(context: bpy.types.Context) -> bpy.types.ViewLayer:
@@ -42,6 +50,14 @@ def open_collections(
 def layout_of(owner: bpy.types.Panel | bpy.types.Menu | bpy.types.Operator) -> bpy.types.UILayout:
     """Return the layout of something that is being drawn."""
     return cast("bpy.types.UILayout", owner.layout)
+
+
+def options_layout(owner: bpy.types.Panel | bpy.types.Operator) -> bpy.types.UILayout:
+    """Return it for options: with names before the values, and nothing to animate them by."""
+    layout = layout_of(owner)
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    return layout
 
 
 def mesh_of(obj: bpy.types.Object) -> bpy.types.Mesh:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import bpy
 
 from ...engine import DOUBTFUL
-from ..common.access import layout_of, view_layer_of
+from ..common.access import layout_of, options_layout, view_layer_of
 from ..common.translated_text import translated
 from ..jobs.verdict import GOOD
 from ..properties.panel_state import picked, state_of
@@ -73,9 +73,7 @@ class HIERMATCH_PT_match(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the two meshes, the button and the result; all else is folded below, in the order of work."""
-        layout = layout_of(self)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = options_layout(self)
         state = state_of(context)
         _draw_pair(layout, context, state)
         _draw_run(layout, context, state)

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..common.access import layout_of
+from ..common.access import options_layout
 from ..properties.bone_pairs import bone_pairs_of
 from ..properties.panel_state import picked, state_of
 from ..scene.character import armatures_above
 from ..transfers.options.motion import MotionOptions
 from ..transfers.options.retarget import option_names
-from ..transfers.retarget_properties import copy_named, retarget_of
+from ..transfers.retarget_properties import retarget_of
 from .panel_text import letters_across, shortened
 from .progress_bar import draw_progress, draw_starter
 from .retarget_panels import draw_report
@@ -96,15 +96,11 @@ class HIERMATCH_PT_motion(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the table of bones, and what is carried over."""
-        layout: Any = layout_of(self)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout: Any = options_layout(self)
         options: Any = retarget_of(context)
         if draw_progress(layout, context, self.bl_idname):
             return
-        button = draw_starter(layout, context, "hiermatch.pair_bones", "Pair Bones", "LINKED")
-        if button is not None:
-            button.refine = options.refine
+        draw_starter(layout, context, "hiermatch.pair_bones", "Pair Bones", "LINKED", options=["refine"])
         _draw_table(layout, context, options)
         layout.prop_search(options, "action", bpy.data, "actions", results_are_suggestions=True)
         names = option_names(MotionOptions)
@@ -114,12 +110,10 @@ class HIERMATCH_PT_motion(bpy.types.Panel):
                 layout.prop(options, name)
         row = layout.row()
         row.scale_y = 1.5
-        button = draw_starter(row, context, "hiermatch.retarget_action", "Retarget Action", "ACTION")
-        if button is not None:
-            copy_named(options, button, [*names, "refine"])
-        button = draw_starter(layout, context, "hiermatch.retarget_pose", "Retarget Pose", "POSE_HLT")
-        if button is not None:
-            copy_named(options, button, ["keep_hands", "refine"])
+        taken = [*names, "refine"]
+        draw_starter(row, context, "hiermatch.retarget_action", "Retarget Action", "ACTION", options=taken)
+        taken = ["keep_hands", "refine"]
+        draw_starter(layout, context, "hiermatch.retarget_pose", "Retarget Pose", "POSE_HLT", options=taken)
         draw_report(layout, context, self.bl_idname, has_before=False)
 
 
@@ -141,11 +135,8 @@ def _draw_table(layout: Any, context: bpy.types.Context, options: Any) -> None: 
     row.operator("hiermatch.clear_bone_pairs", text="", icon="TRASH")
     row.separator()
     row.operator("hiermatch.rename_bones", icon="SORTALPHA")
-    button = draw_starter(
-        layout, context, "hiermatch.transfer_paired_weights", "Weights to Own Rig", "MOD_VERTEX_WEIGHT"
-    )
-    if button is not None:
-        button.refine = options.refine
+    operator, text = "hiermatch.transfer_paired_weights", "Weights to Own Rig"
+    draw_starter(layout, context, operator, text, "MOD_VERTEX_WEIGHT", options=["refine"])
 
 
 def _rigs_picked(context: bpy.types.Context) -> list[set[Any] | None]:

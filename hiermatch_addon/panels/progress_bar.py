@@ -9,10 +9,13 @@ from ..common.access import window_manager_of
 from ..common.translated_text import translated
 from ..jobs.running import is_running, running_panel
 from ..properties.panel_state import progress_of
+from ..transfers.retarget_properties import copy_named, retarget_of
 from .panel_text import draw_label, draw_text, letters_across
 from .question import draw_question
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import bpy
 
 __all__ = ["draw_progress", "draw_starter"]
@@ -50,8 +53,15 @@ def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, panel:
 
 
 def draw_starter(
-    layout: bpy.types.UILayout, context: bpy.types.Context, operator: str, text: str, icon: str, **how: bool
-) -> Any:  # noqa: ANN401 - the operator's properties
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    operator: str,
+    text: str,
+    icon: str,
+    *,
+    options: Iterable[str] = (),
+    **how: bool,
+) -> None:
     """Draw a button that starts a job; while one runs, its name in its place.
 
     Blender draws a button that is under the mouse as it was before, until the mouse moves: it would stay disabled after
@@ -65,18 +75,16 @@ def draw_starter(
         The panel's context.
     operator, text, icon : str
         Identifier of the operator, and what stands on the button.
+    options : iterable of str
+        Names of the options of retargeting that it takes over from the panels.
     **how : bool
         How else to draw the button, such as `depress`.
-
-    Returns
-    -------
-    bpy.types.OperatorProperties or None
-        The operator's properties; None while a job runs.
     """
     place: Any = layout
     if is_running(window_manager_of(context)):
         waiting = place.row()
         waiting.enabled = False  # a label that is not is drawn as bright as a button
         draw_label(waiting, text, icon)
-        return None
-    return place.operator(operator, text=text, icon=icon, **how)
+        return
+    button = place.operator(operator, text=text, icon=icon, **how)
+    copy_named(retarget_of(context), button, options)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import bpy
 
-from ..common.access import layout_of
+from ..common.access import options_layout
 from ..scene.armatures import find_armature
 from ..scene.character import successor
 from ..scene.posing.before_after import is_before
@@ -46,9 +46,7 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the kinds with their options, the button, and what became of it."""
-        layout = layout_of(self)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = options_layout(self)
         state: Any = retarget_of(context)
         if draw_progress(layout, context, self.bl_idname):
             return
@@ -77,9 +75,7 @@ class HIERMATCH_PT_symmetry(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the options and the button."""
-        layout = layout_of(self)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = options_layout(self)
         state = retarget_of(context)
         names = option_names(SymmetriseOptions)
         for name in names:
@@ -96,9 +92,7 @@ def _draw_kind(
     header, body = cast("Any", layout).panel(f"hiermatch_{switch}", default_closed=True)
     header.use_property_split = False
     header.prop(state, switch)
-    button = draw_starter(header, context, _ALONE[switch], "", "PLAY")
-    if button is not None:
-        copy_named(state, button, [*names, "refine"])
+    draw_starter(header, context, _ALONE[switch], "", "PLAY", options=[*names, "refine"])
     if body is not None:
         body.active = getattr(state, switch)
         for name in names:
@@ -114,9 +108,8 @@ def _draw_my_rig(layout: bpy.types.UILayout, context: bpy.types.Context, state: 
         for name in names:
             if name != "my_rig_limit" or state.my_rig_bind:
                 body.prop(state, name)
-        button = draw_starter(body, context, "hiermatch.fit_my_rig", "Fit My Rig", "OUTLINER_OB_ARMATURE")
-        if button is not None:
-            copy_named(state, button, [*names, "refine"])
+        options, icon = [*names, "refine"], "OUTLINER_OB_ARMATURE"
+        draw_starter(body, context, "hiermatch.fit_my_rig", "Fit My Rig", icon, options=options)
 
 
 def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
@@ -127,9 +120,7 @@ def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HI
         names = option_names(WrapOptions)
         for name in names:
             body.prop(state, name)
-        button = draw_starter(body, context, "hiermatch.wrap", "Wrap", "MOD_SHRINKWRAP")
-        if button is not None:
-            copy_named(state, button, [*names, "refine"])
+        draw_starter(body, context, "hiermatch.wrap", "Wrap", "MOD_SHRINKWRAP", options=[*names, "refine"])
 
 
 def draw_report(layout: bpy.types.UILayout, context: bpy.types.Context, panel: str, *, has_before: bool) -> None:

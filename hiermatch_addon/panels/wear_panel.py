@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ..common.access import layout_of, mesh_of, view_layer_of
+from ..common.access import mesh_of, options_layout, view_layer_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..properties.panel_state import picked, state_of
@@ -46,9 +46,7 @@ class HIERMATCH_PT_wear(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw how the active item fits, the options, and the button."""
-        layout = layout_of(self)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout = options_layout(self)
         active, state = view_layer_of(context).objects.active, state_of(context)
         if active is not None:
             active = _item_of(context, active)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...common.access import layout_of, window_manager_of
+from ...common.access import options_layout, window_manager_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.translated_text import translated
@@ -89,9 +89,7 @@ class HIERMATCH_OT_rename_bones(bpy.types.Operator):
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw what matters, as it is asked and when the operation is adjusted."""
-        layout: Any = layout_of(self)
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout: Any = options_layout(self)
         layout.prop(self, "names")
         if self.names != "SOURCE":
             layout.prop(self, "known")
