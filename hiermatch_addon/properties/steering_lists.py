@@ -14,7 +14,7 @@ import numpy as np
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, side_of
 from ..scene.pair import is_own
-from ..storage.halves import find_carriers, find_common, meant
+from ..storage.halves import find_carriers, find_common, in_order, meant
 from ..storage.landmarks import find_landmarks
 from ..storage.stored_match import StoredMatch
 from .panel_state import picked, summary_of
@@ -155,7 +155,7 @@ def pair_rows(scene: bpy.types.Scene, pair: tuple[Side, Side] | None = None) -> 
     halves = common_match(scene, pair)
     if halves is None or not all(half.has_same_faces() for half in halves):
         return []
-    first, second = halves if halves[0].role == "source" else halves[::-1]
+    first, second = in_order(*halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
     sides = (stored.source_points, stored.answer.target_points)
     source, target = sides if first is halves[0] else sides[::-1]

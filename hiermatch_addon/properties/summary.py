@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..scene.character import parts_of
-from ..storage.halves import find_carriers
+from ..storage.halves import find_carriers, in_order
 from ..storage.stored_match import StoredMatch
 from .panel_state import pick, picked, summary_of
 from .steering_lists import common_match, picked_side
@@ -105,7 +105,7 @@ def _remember_common(scene: bpy.types.Scene) -> None:
     swapped, same = halves[0].role == "target", (halves[0].key, halves[0].prefix) == (summary.key, summary.prefix)
     if same and swapped == summary.swapped:
         return
-    source, target = halves[::-1] if swapped else halves
+    source, target = in_order(*halves)
     stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=swapped)
     remember(summary, stored, (source.obj.name, target.obj.name), source.prefix, summary.seconds if same else 0.0)
     summary.stale, summary.lost = source.staleness() or target.staleness(), False

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from ...engine import Progress, called_steps, distortion_after, placed_by_map, run, within
+from ...engine import Progress, called_steps, distortion_after, placed_by_map, within
 from . import writing
 from .contents import contents_steps
 from .stored_match import CornerPoints, Quality
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["Restored", "contents_with_maps", "following_steps", "mapped_contents_steps", "restored", "write_answer"]
+__all__ = ["Restored", "following_steps", "mapped_contents_steps", "restored", "write_answer"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,17 +67,6 @@ def following_steps(
     )
 
 
-def contents_with_maps(
-    stored: StoredMatch,
-    meshes: tuple[TriangleMesh, TriangleMesh],
-    prefix: str,
-    shown: StoredMaps,
-    others: Sequence[StoredMaps | None],
-) -> tuple[Content, Content]:
-    """Prepare the chosen answer with its dense maps, and those of the others as far as they were made, in order."""
-    return run(mapped_contents_steps(stored, meshes, prefix, shown, others))
-
-
 def mapped_contents_steps(
     stored: StoredMatch,
     meshes: tuple[TriangleMesh, TriangleMesh],
@@ -85,7 +74,7 @@ def mapped_contents_steps(
     shown: StoredMaps,
     others: Sequence[StoredMaps | None],
 ) -> Steps[tuple[Content, Content]]:
-    """Prepare them in steps; see `contents_with_maps`."""
+    """Prepare the chosen answer with its dense maps, and those of the others as far as they were made, in order."""
     yield Progress(0.0, "Preparing what is written")
     maps = shown.between(*meshes)
     steps = contents_steps(restored(stored, meshes), prefix, stored.written, maps, left_out=stored.left_out)
@@ -99,8 +88,10 @@ def write_answer(
     stored: StoredMatch,
     prepared: tuple[Content, Content],
     prefix: str,
+    *,
+    show: bool = False,
 ) -> None:
-    """Write it in place of what the match wrote before, and leave what is shown as it is.
+    """Write it in place of what the match wrote before, and leave what is shown as it is unless it is to `show`.
 
     Raises
     ------
@@ -110,4 +101,4 @@ def write_answer(
     for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
         writing.check_names(obj, content, prefix)
         content.keep.update(kept)
-    writing.write(list(zip(objects, prepared, strict=True)), prefix, show=False)
+    writing.write(list(zip(objects, prepared, strict=True)), prefix, show=show)

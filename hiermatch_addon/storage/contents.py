@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ...engine import Progress, run
+from ...engine import Progress
 from .views import colors
 from .views.stretch import DOUBLED, vertex_stretch
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ...engine import Steps
     from .vertex_maps import MapPair
 
-__all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents", "contents_steps"]
+__all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents_steps"]
 
 _LABEL = "Preparing what is written"
 
@@ -144,14 +144,14 @@ class Content:
         return next(iter(self.colors), None)
 
 
-def contents(
+def contents_steps(
     result: Correspondence,
     prefix: str,
     kinds: Kinds,
     maps: MapPair | None = None,
     *,
     left_out: Collection[int] = (),
-) -> tuple[Content, Content]:
+) -> Steps[tuple[Content, Content]]:
     """Prepare what a match writes on the source and on the target.
 
     Parameters
@@ -172,18 +172,6 @@ def contents(
     source, target : Content
         What to write on each.
     """
-    return run(contents_steps(result, prefix, kinds, maps, left_out=left_out))
-
-
-def contents_steps(
-    result: Correspondence,
-    prefix: str,
-    kinds: Kinds,
-    maps: MapPair | None = None,
-    *,
-    left_out: Collection[int] = (),
-) -> Steps[tuple[Content, Content]]:
-    """Prepare it in steps; see `contents`."""
     prepared = (Content(), Content())
     if kinds.vertex_groups:
         for content, points in zip(prepared, (result.source_points, result.target_points), strict=True):

@@ -257,6 +257,11 @@ def find_common(one: Side, other: Side) -> list[tuple[Half, Half]]:
     return pairs
 
 
+def in_order(one: Half, other: Half) -> tuple[Half, Half]:
+    """Put what was matched as the source first."""
+    return (one, other) if one.role == "source" else (other, one)
+
+
 def _half(side: Side, prefix: str) -> Half | None:
     """Return what all parts of a side carry of one match, in their order; None if they do not carry all of one."""
     halves = [Half(part, prefix) for part in parts_of(side)]

@@ -6,14 +6,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ...engine import run
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_mode, check_pair
 from . import writing
-from .answer_writing import contents_with_maps, restored
-from .contents import contents
-from .halves import find_common
+from .answer_writing import mapped_contents_steps, restored, write_answer
+from .contents import contents_steps
+from .halves import find_common, in_order
 from .match_file import MatchFile
 from .stored_match import StoredMatch
 from .vertex_maps import read_all_maps
@@ -52,7 +53,7 @@ def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     if len(found) > 1:
         prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
         raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
-    source, target = sorted(found[0], key=lambda half: half.role)  # "source" comes before "target"
+    source, target = in_order(*found[0])
     for half in (source, target):
         for part in parts_of(half.obj):
             check_mode(part)
@@ -97,16 +98,13 @@ def apply_match(context: bpy.types.Context, source: Side, target: Side, match: M
     source_mesh, target_mesh = (read_surface(obj, depsgraph, use_modifiers=use_modifiers) for obj in objects)
     meshes = (source_mesh, target_mesh)
     if match.maps is not None:
-        prepared = contents_with_maps(stored, meshes, prefix, match.maps, match.others)
+        prepared = run(mapped_contents_steps(stored, meshes, prefix, match.maps, match.others))
     else:
         # Without maps, colors and distortion are made of distances that the file does not hold.
         written = replace(stored.written, match_colors=False, distortion=False, confidence=False)
         stored = replace(stored, written=written, notes=(*stored.notes, _SPARSE))
-        prepared = contents(restored(stored, meshes), prefix, written)
-    for obj, content, kept in zip(objects, prepared, stored.to_plain(), strict=True):
-        writing.check_names(obj, content, prefix)
-        content.keep.update(kept)
-    writing.write(list(zip(objects, prepared, strict=True)), prefix)
+        prepared = run(contents_steps(restored(stored, meshes), prefix, written))
+    write_answer(objects, stored, prepared, prefix, show=True)
     return stored
 
 

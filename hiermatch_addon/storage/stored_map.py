@@ -6,10 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...engine import run
 from ..common.errors import ObjectError
 from ..scene.character import read_surface
-from .answer_writing import contents_with_maps, write_answer
-from .halves import find_common
+from .answer_writing import mapped_contents_steps, write_answer
+from .halves import find_common, in_order
 from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name, read_all_maps
 
@@ -79,7 +80,7 @@ def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
     for half in halves:
         if stale := half.staleness():
             raise ObjectError(stale)
-    first, second = _in_order(*halves)
+    first, second = in_order(*halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
     if not stored.written.dense:
         raise ObjectError(f"The match of {pair} has no dense map. Match them again with Dense Map on.")
@@ -124,7 +125,7 @@ def keep_refined(context: bpy.types.Context, source: Side, target: Side, prefix:
     """
     found = find_maps(source, target, prefix)
     sides = (found.source, found.target)
-    first, second = _in_order(*sides)
+    first, second = in_order(*sides)
     stored = StoredMatch.from_plain(first.kept, second.kept).as_refined()
     depsgraph = context.evaluated_depsgraph_get()
     source_mesh, target_mesh = (
@@ -132,10 +133,5 @@ def keep_refined(context: bpy.types.Context, source: Side, target: Side, prefix:
     )
     shown = maps if first is sides[0] else maps.reverse
     _, *others = read_all_maps(first.obj, second.obj, first.prefix, len(stored.answers))
-    prepared = contents_with_maps(stored, (source_mesh, target_mesh), first.prefix, shown, others)
+    prepared = run(mapped_contents_steps(stored, (source_mesh, target_mesh), first.prefix, shown, others))
     write_answer((first.obj, second.obj), stored, prepared, first.prefix)
-
-
-def _in_order(one: Half, other: Half) -> tuple[Half, Half]:
-    """Put what was matched as the source first."""
-    return (one, other) if one.role == "source" else (other, one)

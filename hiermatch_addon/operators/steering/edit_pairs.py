@@ -13,6 +13,7 @@ from ...common.errors import ObjectError
 from ...properties.steering_lists import common_match, pair_rows, point_name, steered_pair
 from ...properties.steering_properties import steering_of
 from ...scene.pair import check_pair
+from ...storage.halves import in_order
 from ...storage.landmarks import add_landmarks, find_landmarks, remove_landmark, select_on_side
 from ...storage.stored_match import StoredMatch
 from ...storage.writing import change_kept, take_away
@@ -124,7 +125,7 @@ class HIERMATCH_OT_remove_pair(_PairOperator, bpy.types.Operator):
 
 def leave_out(halves: tuple[Half, Half], number: int) -> None:
     """Remove the vertex groups of a point, numbered from 0, and keep in mind that it has none."""
-    first, second = halves if halves[0].role == "source" else halves[::-1]
+    first, second = in_order(*halves)
     left_out = {*StoredMatch.from_plain(first.kept, second.kept).left_out, number}
     change_kept(first.obj, first.prefix, left_out=" ".join(map(str, sorted(left_out))))
     for half in halves:

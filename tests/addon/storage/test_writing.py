@@ -9,10 +9,11 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
+from hiermatch.engine import run
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.scene import attribute_io, mesh_io
 from hiermatch.hiermatch_addon.storage import writing
-from hiermatch.hiermatch_addon.storage.contents import UNREACHED, Content, contents
+from hiermatch.hiermatch_addon.storage.contents import UNREACHED, Content, contents_steps
 from hiermatch.hiermatch_addon.storage.vertex_maps import MapPair
 from hiermatch.hiermatch_addon.storage.views import colors
 from hiermatch.hiermatch_addon.storage.written_names import written_names
@@ -33,7 +34,7 @@ def result(pair):
 
 def write(pair, result, prefix="HM", *, vertex_groups=True, match_colors=True, distortion=True):
     kinds = {"vertex_groups": vertex_groups, "match_colors": match_colors, "distortion": distortion}
-    prepared = contents(result, prefix, SimpleNamespace(**kinds, confidence=True))
+    prepared = run(contents_steps(result, prefix, SimpleNamespace(**kinds, confidence=True)))
     plan = list(zip(pair, prepared, strict=True))
     for obj, content in plan:
         writing.check_names(obj, content, prefix)
@@ -90,11 +91,9 @@ def test_positions_come_back_from_the_groups(pair, result):
 def test_names_stay_in_order_beyond_a_thousand(result):
     points = result.source_points
     many = type(points)(*(np.resize(a, (1001, *a.shape[1:])) for a in vars(points).values()))
-    content, _ = contents(
-        replace(result, source_points=many, target_points=many, point_distortion=np.zeros(1001)),
-        "HM",
-        SimpleNamespace(vertex_groups=True, match_colors=False, distortion=False, confidence=False),
-    )
+    result = replace(result, source_points=many, target_points=many, point_distortion=np.zeros(1001))
+    kinds = SimpleNamespace(vertex_groups=True, match_colors=False, distortion=False, confidence=False)
+    content, _ = run(contents_steps(result, "HM", kinds))
     assert [*content.groups][998:] == ["HM.999", "HM.1000", "HM.1001"]
 
 
@@ -106,7 +105,7 @@ def test_a_group_holds_what_has_a_partner_if_not_all_has(pair, result, some_alon
     alone = (np.arange(len(there)) < 5) & some_alone
     maps = MapPair(*meshes, replace(there, has_partner=~alone), back)
     kinds = SimpleNamespace(vertex_groups=True, match_colors=False, distortion=False, confidence=False)
-    source, target = contents(result, "HM", kinds, maps)
+    source, target = run(contents_steps(result, "HM", kinds, maps))
     assert ("HM Overlap" in source.groups) == ("HM Overlap" in target.groups) == some_alone
     if some_alone:
         vertices, weights = source.groups["HM Overlap"]
@@ -342,9 +341,8 @@ def test_a_failure_half_way_changes_nothing(pair, result, monkeypatch, step, ear
 @pytest.mark.parametrize("kept", [{"n" * 64: 1}, {"count": 1 << 40}, {"note": "half a character: \ud800"}])
 def test_what_cannot_be_kept_changes_nothing(pair, result, kept):
     before = [mesh_snapshot(obj) for obj in pair]
-    prepared = contents(
-        result, "HM", SimpleNamespace(vertex_groups=True, match_colors=True, distortion=True, confidence=True)
-    )
+    kinds = SimpleNamespace(vertex_groups=True, match_colors=True, distortion=True, confidence=True)
+    prepared = run(contents_steps(result, "HM", kinds))
     prepared[1].keep.update(kept)
     with pytest.raises((KeyError, OverflowError, ValueError)):
         writing.write(list(zip(pair, prepared, strict=True)), "HM")
