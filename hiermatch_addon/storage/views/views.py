@@ -13,6 +13,7 @@ from ...common.errors import ObjectError
 from ...scene.character import parts_of, read_surface
 from .. import writing
 from ..contents import Content
+from ..halves import in_order
 from ..stored_match import StoredMatch
 from ..vertex_maps import StoredMaps, map_name
 from . import colors
@@ -46,8 +47,6 @@ _ENDINGS: Final = {
     "REGIONS": "Regions",
     "CHECKER": "Checker",
 }
-_MADE: Final = ("OVERLAP", "REGIONS", "CHECKER")
-"""Views that a match does not write."""
 
 
 def attribute_of(prefix: str, view: str) -> str:
@@ -73,17 +72,10 @@ def prepare_view(context: bpy.types.Context, halves: tuple[Half, Half], view: st
         If the colours are not there and cannot be made; the message says what to do.
     """
     name = attribute_of(halves[0].prefix, view)
-    for half in halves:
-        if view in _MADE and (stale := half.staleness()):
-            raise ObjectError(stale)
     if view in _MADE:
-        make = {"OVERLAP": _overlap, "REGIONS": _regions, "CHECKER": _checks}[view]
-        shades = make(context, halves)
-        contents = [Content(colors={name: colors.opaque(colors.to_linear(shade))}) for shade in shades]
-        for half, content in zip(halves, contents, strict=True):
-            writing.check_names(half.obj, content, half.prefix)
-        for half, content in zip(halves, contents, strict=True):
-            writing.extend(half.obj, content, half.prefix)
+        _check_fresh(halves)
+        shades = _MADE[view](context, halves)
+        _write(halves, [Content(colors={name: colors.opaque(colors.to_linear(shade))}) for shade in shades])
         return
     for half in halves:
         if any(name not in mesh_of(part).color_attributes for part in parts_of(half.obj)):
@@ -108,9 +100,7 @@ def region_groups(context: bpy.types.Context, halves: tuple[Half, Half]) -> int:
     HierMatchError
         If they cannot be found, or vertex groups of the user's own are in the way; nothing is written then.
     """
-    for half in halves:
-        if stale := half.staleness():
-            raise ObjectError(stale)
+    _check_fresh(halves)
     prefix, found = halves[0].prefix, _region_numbers(context, halves)
     contents = []
     for numbers in found:
@@ -119,28 +109,29 @@ def region_groups(context: bpy.types.Context, halves: tuple[Half, Half]) -> int:
             vertices = np.flatnonzero(numbers == number)
             groups[f"{prefix} Region.{number + 1:03d}"] = (vertices, np.ones(len(vertices)))
         contents.append(Content(groups=groups))
-    for half, content in zip(halves, contents, strict=True):
-        writing.check_names(half.obj, content, prefix)
-    for half, content in zip(halves, contents, strict=True):
-        writing.extend(half.obj, content, prefix)
+    _write(halves, contents)
     return len(contents[0].groups)
 
 
-def _in_order(halves: tuple[Half, Half]) -> tuple[Half, Half]:
-    """Put what was matched as the source first."""
-    return halves if halves[0].role == "source" else (halves[1], halves[0])
+def _check_fresh(halves: tuple[Half, Half]) -> None:
+    """Make sure that neither mesh was edited since."""
+    for half in halves:
+        if stale := half.staleness():
+            raise ObjectError(stale)
 
 
-def _as_asked(
-    halves: tuple[Half, Half], values: tuple[NDArray[np.float64], NDArray[np.float64]]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Put values of source and target in the order of the halves."""
-    return values if halves[0].role == "source" else values[::-1]
+def _write(halves: tuple[Half, Half], contents: list[Content]) -> None:
+    """Write more on both meshes, given for the source and for the target, if nothing else has its names."""
+    plan = [(half.obj, content, half.prefix) for half, content in zip(in_order(*halves), contents, strict=True)]
+    for each in plan:
+        writing.check_names(*each)
+    for each in plan:
+        writing.extend(*each)
 
 
 def _maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPair | None:
     """Read the dense maps, of what was matched as the source first; None if there are none."""
-    first, second = _in_order(halves)
+    first, second = in_order(*halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
     kept = StoredMaps.read(first.obj, second.obj, map_name(first.prefix))
     if kept is None:
@@ -155,11 +146,11 @@ def _maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPair | No
 def _region_numbers(
     context: bpy.types.Context, halves: tuple[Half, Half]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find the region of each vertex, in the order of the halves.
+    """Find the region of each vertex of the source and of the target.
 
     With a dense map, the regions of the source go where it takes them; without one, each mesh has its own.
     """
-    first, second = _in_order(halves)
+    first, second = in_order(*halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
     maps = _maps(context, halves)
     kept = np.setdiff1d(np.arange(len(stored.answer.point_distortion)), stored.left_out)
@@ -171,21 +162,21 @@ def _region_numbers(
     else:
         own = nearest_regions(maps.source, here)
         found = (own, own[maps.target_to_source.nearest_vertices])
-    numbers = tuple(np.where(side >= 0, kept[side], side) for side in found)
-    return (numbers[0], numbers[1]) if halves[0].role == "source" else (numbers[1], numbers[0])
+    source, target = (np.where(side >= 0, kept[side], side) for side in found)
+    return source, target
 
 
 def _regions(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Colour both meshes by regions, in the order of the halves."""
+    """Colour source and target by regions."""
     one, other = _region_numbers(context, halves)
     return region_colors(one), region_colors(other)
 
 
 def _overlap(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Colour both meshes by what has a partner on the other, in the order of the halves."""
+    """Colour source and target by what has a partner on the other."""
     maps = _needed_maps(context, halves)
     own, other = (overlap_colors(found.has_partner) for found in (maps.source_to_target, maps.target_to_source))
-    return _as_asked(halves, (own, other))
+    return own, other
 
 
 def _needed_maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPair:
@@ -200,10 +191,14 @@ def _needed_maps(context: bpy.types.Context, halves: tuple[Half, Half]) -> MapPa
 
 
 def _checks(context: bpy.types.Context, halves: tuple[Half, Half]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Colour both meshes by checks on the source, in the order of the halves."""
+    """Colour source and target by checks on the source."""
     maps = _needed_maps(context, halves)
     places = maps.source.vertices
     size = check_size(places, float(np.median(maps.source.edge_lengths)))
     shades = colors.match_colors(places, maps.source.vertex_areas)
     carried = maps.target_to_source.transfer(np.column_stack([shades, places]))
-    return _as_asked(halves, (checked(shades, places, size), checked(carried[:, :3], carried[:, 3:], size)))
+    return checked(shades, places, size), checked(carried[:, :3], carried[:, 3:], size)
+
+
+_MADE: Final = {"OVERLAP": _overlap, "REGIONS": _regions, "CHECKER": _checks}
+"""Views that a match does not write, and what makes their colours."""
