@@ -35,6 +35,7 @@ __all__ = [
     "load_pairs",
     "pairing_notes",
     "pairing_of",
+    "remove_rows",
     "rows_of",
     "save_pairs",
     "write_pairing",
@@ -159,7 +160,7 @@ def write_pairing(
     """Write pairs, in the armatures' own spaces, into the table, in place of those that are not locked."""
     names = [tuple(bone.name for bone in armature_of(rig).bones) for rig in (source, target)]
     locked = {(row.source, row.target) for row in rows_of(scene, source, target) if row.locked}
-    _remove(scene, [row for row in rows_of(scene, source, target) if not row.locked or row.source])
+    remove_rows(scene, [row for row in rows_of(scene, source, target) if not row.locked or row.source])
     upright = _quaternion(pairing.upright)
     rests = rest_points(source, names[0]), rest_points(target, names[1])
     for number in range(len(pairing)):
@@ -232,7 +233,7 @@ def add_row(scene: bpy.types.Scene, rigs: tuple[bpy.types.Object, bpy.types.Obje
     for rig, name in zip(rigs, bones, strict=True):
         if name not in armature_of(rig).bones and (name or rig == rigs[1]):
             raise ObjectError(f'"{rig.name}" has no bone called "{name}".')
-    _remove(scene, [row for row in rows_of(scene, *rigs) if row.target == bones[1]])
+    remove_rows(scene, [row for row in rows_of(scene, *rigs) if row.target == bones[1]])
     row = bone_pairs_of(scene).add()
     row.source_rig, row.target_rig = rigs
     row.source, row.target = bones
@@ -242,7 +243,7 @@ def add_row(scene: bpy.types.Scene, rigs: tuple[bpy.types.Object, bpy.types.Obje
 def clear_rows(scene: bpy.types.Scene, rigs: tuple[bpy.types.Object, bpy.types.Object], *, locked: bool) -> int:
     """Take all rows of two armatures out of the table, the locked ones as well if wanted; return how many."""
     gone = [row for row in rows_of(scene, *rigs) if locked or not row.locked]
-    _remove(scene, gone)
+    remove_rows(scene, gone)
     return len(gone)
 
 
@@ -299,7 +300,7 @@ def load_pairs(
     ]
     if not fitting:
         raise ObjectError(f'No pair of the file fits the bones of "{source.name}" and "{target.name}".')
-    _remove(scene, rows_of(scene, source, target))
+    remove_rows(scene, rows_of(scene, source, target))
     for pair in fitting:
         row = bone_pairs_of(scene).add()
         row.source_rig, row.target_rig, row.name = source, target, pair["target"]
@@ -367,7 +368,7 @@ def _present(rows: Sequence[Any], source: bpy.types.Object, target: bpy.types.Ob
     return [row for row in rows if row.source in bones[0] and row.target in bones[1]]
 
 
-def _remove(scene: bpy.types.Scene, rows: Sequence[Any]) -> None:
+def remove_rows(scene: bpy.types.Scene, rows: Sequence[Any]) -> None:
     """Take rows out of the table."""
     table, gone = bone_pairs_of(scene), {row.as_pointer() for row in rows}
     for number in [number for number, row in enumerate(table) if row.as_pointer() in gone][::-1]:

@@ -10,7 +10,7 @@ import bpy
 
 from ...common.errors import ObjectError
 from ...jobs.running import is_idle
-from ...properties.bone_pairs import add_row, bone_pairs_of, clear_rows, rows_of
+from ...properties.bone_pairs import add_row, bone_pairs_of, clear_rows, remove_rows, rows_of
 from ...scene.motion.rigs import rig_of
 from ...transfers.retarget_properties import retarget_of
 from ..pair_operator import PairOperator, pick_sides
@@ -78,16 +78,14 @@ class HIERMATCH_OT_remove_bone_pair(PairEditor, bpy.types.Operator):
 
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
         scene = cast("bpy.types.Scene", context.scene)
-        gone = {
-            row.as_pointer()
+        gone = [
+            row
             for row in rows_of(scene, source, target)
             if row.target == self.target_bone and self.source_bone in {"", row.source}
-        }
+        ]
         if not gone:
             raise ObjectError(f'"{self.target_bone}" of "{target.name}" is not in the table of pairs.')
-        table = bone_pairs_of(scene)
-        for number in [number for number, row in enumerate(table) if row.as_pointer() in gone][::-1]:
-            table.remove(number)
+        remove_rows(scene, gone)
         return f'"{self.target_bone}" was taken out of the table'
 
 
