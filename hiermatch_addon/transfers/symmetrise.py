@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, hstack
 
 from ...engine import Progress, Symmetriser, called_steps, symmetry_map_steps, within
 from ..common.access import mesh_of, view_layer_of
@@ -153,10 +153,8 @@ class _Weights:
             free += missing
         self.names = [name for name in free if flipped_name(name) in free]
         read = read_weights(obj)
-        empty = csr_array((read.shape[0], 1))
-        columns = [obj.vertex_groups.find(name) for name in self.names]
-        blocks = [empty if column < 0 else read[:, [column]] for column in columns]
-        self._weights = csr_array(_side_by_side(blocks, read.shape[0]))
+        read = csr_array(hstack([read, csr_array((read.shape[0], 1))], format="csr"))  # the last for missing groups
+        self._weights = csr_array(read[:, np.array([obj.vertex_groups.find(name) for name in self.names], np.int64)])
 
     def compute(self, symmetriser: Symmetriser) -> None:
         """Make them symmetric."""
@@ -246,15 +244,6 @@ class _Colors:
 
 def _state(obj: bpy.types.Object) -> tuple[str, str]:
     return topology(mesh_of(obj)), position_digest(mesh_of(obj))
-
-
-def _side_by_side(columns: list[csr_array], rows: int) -> csr_array:
-    """Put columns (n, 1) side by side."""
-    entries = [column.tocoo() for column in columns]
-    data = np.concatenate([np.empty(0), *(entry.data for entry in entries)])
-    row = np.concatenate([np.empty(0, np.int64), *(entry.row for entry in entries)])
-    number = np.repeat(np.arange(len(entries)), [entry.nnz for entry in entries])
-    return csr_array((data, (row, number)), shape=(rows, len(columns)))
 
 
 def _flipped_group(settings: KeySettings) -> str:
