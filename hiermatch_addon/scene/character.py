@@ -32,7 +32,6 @@ __all__ = [
     "Side",
     "SideReference",
     "armatures_above",
-    "character_of",
     "corner_ranges",
     "edge_ranges",
     "face_ranges",
@@ -163,11 +162,6 @@ def is_of(obj: bpy.types.Object, chosen: bpy.types.ID) -> bool:
     own: Any = chosen
     rigs = armatures_above(own) | ({successor(own)} if own.type == "ARMATURE" else set())
     return obj == own or obj in own.children_recursive or not rigs.isdisjoint(armatures_above(obj))
-
-
-def character_of(side: Side) -> Character:
-    """Return a side as a character; a mesh object is one of a single part."""
-    return side if isinstance(side, Character) else Character(side.name, (side,))
 
 
 def joined(name: str, parts: Iterable[bpy.types.Object]) -> Side:

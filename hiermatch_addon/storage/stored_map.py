@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dense map of a match that is kept on two meshes, for whoever wants to use it without matching again."""
+"""The dense map of a match that is kept on two meshes, for what uses it without matching again."""
 
 from __future__ import annotations
 
@@ -20,9 +20,8 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .halves import Half
     from .stored_match import Quality
-    from .vertex_maps import MapPair
 
-__all__ = ["FoundMaps", "find_maps", "keep_refined", "stored_map"]
+__all__ = ["FoundMaps", "find_maps", "keep_refined"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,17 +90,6 @@ def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
     if first is not halves[0]:
         maps, quality = maps.reverse, quality and quality.reverse
     return FoundMaps(*halves, maps, answer.refined, stored.written.use_modifiers, quality)
-
-
-def stored_map(context: bpy.types.Context, source: Side, target: Side, prefix: str = "") -> MapPair:
-    """Read the dense maps between two objects that were matched, with the meshes as they stand in the world.
-
-    Parameters and errors are those of `find_maps`.
-    """
-    found = find_maps(source, target, prefix)
-    depsgraph = context.evaluated_depsgraph_get()
-    meshes = [read_surface(obj, depsgraph, use_modifiers=found.use_modifiers) for obj in (source, target)]
-    return found.maps.between(meshes[0], meshes[1])
 
 
 def keep_refined(context: bpy.types.Context, source: Side, target: Side, prefix: str, maps: StoredMaps) -> None:

@@ -10,6 +10,8 @@ import bpy
 import numpy as np
 from hiermatch.engine import CoarseMatch, MatchResult, SurfaceMap, SurfacePoints
 from hiermatch.hiermatch_addon.jobs import match_job
+from hiermatch.hiermatch_addon.scene.character import read_surface
+from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 
 QUICK = {"points": 12, "coarse_points": 4, "coarse_candidates": 8, "samples": 48, "hypotheses": 2, "dense": False}
 """Settings with which a small mesh is matched in some tenths of a second."""
@@ -197,6 +199,14 @@ def values_of(attribute):
     values = np.empty(len(attribute.data) * width, dtype)
     attribute.data.foreach_get(member, values)
     return values
+
+
+def maps_of(source, target, prefix=""):
+    """The dense maps that two sides keep, with the meshes as they stand in the world."""
+    found = find_maps(source, target, prefix)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    meshes = [read_surface(side, depsgraph, use_modifiers=found.use_modifiers) for side in (source, target)]
+    return found.maps.between(*meshes)
 
 
 def snapshot():

@@ -23,8 +23,8 @@ def bpy():
 def test_a_match_is_kept_used_and_told_to_be_out_of_date(bpy, tmp_path):
     from hiermatch.hiermatch_addon.common.errors import ObjectError
     from hiermatch.hiermatch_addon.properties import freshness
-    from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
+    from tests.addon.scenes import maps_of
     from tools import demo_truth
 
     def pair():
@@ -39,7 +39,7 @@ def test_a_match_is_kept_used_and_told_to_be_out_of_date(bpy, tmp_path):
     bpy.ops.hiermatch.match(source=names[0], target=names[1], points=32, samples=128)
     assert state.summary.verdict
     assert state.summary.confidence > 0.5
-    maps = stored_map(bpy.context, *pair())
+    maps = maps_of(*pair())
     for way, domain, image in (
         (maps.source_to_target, maps.source, maps.target),
         (maps.target_to_source, maps.target, maps.source),
@@ -55,14 +55,14 @@ def test_a_match_is_kept_used_and_told_to_be_out_of_date(bpy, tmp_path):
     bpy.ops.wm.open_mainfile(filepath=path)
     for obj, name in zip(pair(), ("Tom", "Tiger"), strict=True):
         obj.name = name
-    again = stored_map(bpy.context, *pair())
+    again = maps_of(*pair())
     assert (again.target_to_source.corners == maps.target_to_source.corners).all()
     assert (again.target_to_source.barycentric == maps.target_to_source.barycentric).all()
 
     # The other way round, and back.
     bpy.ops.hiermatch.swap()
     assert (bpy.context.scene.hiermatch.summary.source, pair()[0].name) == ("Tiger", "Tiger")
-    swapped = stored_map(bpy.context, *pair())
+    swapped = maps_of(*pair())
     assert (swapped.source_to_target.corners == maps.target_to_source.corners).all()
     bpy.ops.hiermatch.swap()
 
@@ -72,10 +72,10 @@ def test_a_match_is_kept_used_and_told_to_be_out_of_date(bpy, tmp_path):
     freshness.refresh(bpy.context.scene)
     assert 'The match is out of date: "Tiger" was edited since' in bpy.context.scene.hiermatch.summary.stale
     with pytest.raises(ObjectError, match="out of date"):
-        stored_map(bpy.context, *pair())
+        maps_of(*pair())
     bpy.ops.hiermatch.match(source="Tom", target="Tiger", points=32, samples=128)
     assert not bpy.context.scene.hiermatch.summary.stale
-    assert stored_map(bpy.context, *pair())
+    assert maps_of(*pair())
 
     # In the end everything is taken away.
     bpy.ops.hiermatch.clear()

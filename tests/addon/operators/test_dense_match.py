@@ -9,7 +9,7 @@ import pytest
 from hiermatch import engine
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.scene import mesh_io
-from hiermatch.hiermatch_addon.storage.stored_map import find_maps, stored_map
+from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 from hiermatch.hiermatch_addon.storage.views import colors
 from hiermatch.hiermatch_addon.storage.writing import change_kept, kept
 
@@ -20,6 +20,7 @@ from tests.addon.scenes import (
     add_blob,
     add_pair,
     add_symmetric_pair,
+    maps_of,
     mesh_snapshot,
     snapshot,
     values_of,
@@ -48,10 +49,6 @@ def attributes(obj):
 
 def read(obj):
     return mesh_io.read_mesh(obj, bpy.context.evaluated_depsgraph_get(), use_modifiers=False)
-
-
-def maps_of(one, other, **names):
-    return stored_map(bpy.context, one, other, **names)
 
 
 def same_maps(one, other):

@@ -7,9 +7,8 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
-from tests.addon.scenes import DENSE, MAP_ATTRIBUTES, add_blob, add_pair, snapshot, values_of
+from tests.addon.scenes import DENSE, MAP_ATTRIBUTES, add_blob, add_pair, maps_of, snapshot, values_of
 
 
 def put_in_order(elements, place):
@@ -127,7 +126,7 @@ def test_a_mess_is_matched(mess):
     else:
         edited(target, change)
     assert bpy.ops.hiermatch.match(source="Source", target="Target", **DENSE) == {"FINISHED"}
-    maps = stored_map(bpy.context, source, target)
+    maps = maps_of(source, target)
     for obj, sides in ((source, maps), (target, maps.reverse)):
         way = sides.source_to_target
         assert len(way) == len(obj.data.vertices)

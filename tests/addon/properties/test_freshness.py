@@ -11,9 +11,8 @@ import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.properties import freshness
 from hiermatch.hiermatch_addon.scene import mesh_io
-from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
-from tests.addon.scenes import QUICK, add_blob, add_pair, edit_twin, snapshot
+from tests.addon.scenes import QUICK, add_blob, add_pair, edit_twin, maps_of, snapshot
 
 
 def summary():
@@ -105,7 +104,7 @@ class TestEdits:
     def test_what_does_not_matter(self, dense_pair, change, which):
         HARMLESS[change](dense_pair[which])
         assert not stale()
-        assert stored_map(bpy.context, *dense_pair)
+        assert maps_of(*dense_pair)
 
     @pytest.mark.parametrize("which", [0, 1])
     @pytest.mark.parametrize("change", EDITS)
@@ -114,7 +113,7 @@ class TestEdits:
         alter(dense_pair[which])
         name = ("Source", "Target")[which]
         with pytest.raises(ObjectError, match=f'The match is out of date: "{name}" {message}. Match again') as told:
-            stored_map(bpy.context, *dense_pair)
+            maps_of(*dense_pair)
         assert stale() == str(told.value)
 
     def test_taking_an_edit_back_makes_it_fit_again(self, dense_pair):
@@ -210,30 +209,30 @@ class TestStoredMap:
     def test_strangers(self, dense_pair):
         other = add_blob("Other")
         with pytest.raises(ObjectError, match=r'"Source" and "Other" carry no match with one another\. Match them'):
-            stored_map(bpy.context, dense_pair[0], other)
+            maps_of(dense_pair[0], other)
         with pytest.raises(ObjectError, match='no match with one another with the Prefix "Mine"'):
-            stored_map(bpy.context, *dense_pair, prefix="Mine")
+            maps_of(*dense_pair, prefix="Mine")
         camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
         with pytest.raises(ObjectError, match="no match with one another"):
-            stored_map(bpy.context, camera, dense_pair[1])
+            maps_of(camera, dense_pair[1])
 
     def test_one_matched_with_another_since(self, dense_pair):
         add_blob("Other")
         bpy.ops.hiermatch.match(source="Other", target="Target", **QUICK)
         with pytest.raises(ObjectError, match='"Source" and "Target" carry no match with one another'):
-            stored_map(bpy.context, *dense_pair)
+            maps_of(*dense_pair)
 
     def test_several(self, dense_pair):
         bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK, prefix="Second")
         with pytest.raises(ObjectError, match=r'several matches\. Name the Prefix of one of them: "HM", "Second"'):
-            stored_map(bpy.context, *dense_pair)
-        assert stored_map(bpy.context, *dense_pair, prefix="HM")
+            maps_of(*dense_pair)
+        assert maps_of(*dense_pair, prefix="HM")
         with pytest.raises(ObjectError, match="has no dense map"):
-            stored_map(bpy.context, *dense_pair, prefix="Second")
+            maps_of(*dense_pair, prefix="Second")
 
     def test_reading_changes_nothing(self, dense_pair):
         before = snapshot()
-        stored_map(bpy.context, *dense_pair)
+        maps_of(*dense_pair)
         assert snapshot() == before
 
 

@@ -15,14 +15,13 @@ from hiermatch.engine import SettingsError
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 from hiermatch.hiermatch_addon.storage.match_exchange import apply_match, collect_match
 from hiermatch.hiermatch_addon.storage.match_file import load_match, save_match
-from hiermatch.hiermatch_addon.storage.stored_map import stored_map
 
-from tests.addon.scenes import MAP_ATTRIBUTES, QUICK, add_pair, edit_twin, mesh_snapshot, snapshot, values_of
+from tests.addon.scenes import MAP_ATTRIBUTES, QUICK, add_pair, edit_twin, maps_of, mesh_snapshot, snapshot, values_of
 
 SUFFIXES = ["npz", "json"]
 
 
-def maps_of(obj):
+def map_values(obj):
     return [values_of(obj.data.attributes[name]).tobytes() for name in MAP_ATTRIBUTES]
 
 
@@ -39,7 +38,7 @@ def exported(dense_pair, tmp_path):
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_what_comes_back_is_what_was_there(dense_pair, exported, suffix):
     before = [mesh_snapshot(obj) for obj in dense_pair]
-    kept = stored_map(bpy.context, *dense_pair)
+    kept = maps_of(*dense_pair)
     bpy.ops.hiermatch.clear(object="Source")
     assert "HM Map Weights" not in dense_pair[0].data.attributes
     stored = apply_match(bpy.context, *dense_pair, load_match(exported[suffix]), "HM")
@@ -48,7 +47,7 @@ def test_what_comes_back_is_what_was_there(dense_pair, exported, suffix):
         assert one["weights"] == other["weights"]
         assert sorted(one["attributes"]) == sorted(other["attributes"])
         assert one["properties"]["hiermatch"]["HM"]["kept"] == other["properties"]["hiermatch"]["HM"]["kept"]
-    again = stored_map(bpy.context, *dense_pair)
+    again = maps_of(*dense_pair)
     assert np.array_equal(again.source_to_target.barycentric, kept.source_to_target.barycentric)
     assert stored.answer.quality is not None
 
@@ -70,15 +69,15 @@ def test_the_other_answer_travels_too(dense_pair, tmp_path, suffix):
     bpy.ops.hiermatch.flip(object="Source")
     path = tmp_path / f"flipped.{suffix}"
     save_match(collect_match(*dense_pair), path)
-    flipped = maps_of(dense_pair[0])
+    flipped = map_values(dense_pair[0])
     bpy.ops.hiermatch.clear(object="Source")
     apply_match(bpy.context, *dense_pair, load_match(path), "HM")
-    assert maps_of(dense_pair[0]) == flipped
+    assert map_values(dense_pair[0]) == flipped
     match = load_match(path)
     assert match.stored.chosen == 1
     assert all(maps is not None for maps in match.others)
     bpy.ops.hiermatch.flip(object="Source")
-    assert maps_of(dense_pair[0]) != flipped
+    assert map_values(dense_pair[0]) != flipped
 
 
 def test_it_fits_meshes_with_other_names_and_poses(dense_pair, exported):
@@ -89,7 +88,7 @@ def test_it_fits_meshes_with_other_names_and_poses(dense_pair, exported):
         vertex.co.x *= 1.1
     apply_match(bpy.context, source, target, load_match(exported["npz"]), "New")
     assert collect_match(source, target).stored.names == ("Renamed", "Target")
-    assert stored_map(bpy.context, source, target).source_to_target.confidence.max() > 0
+    assert maps_of(source, target).source_to_target.confidence.max() > 0
 
 
 def test_the_order_of_the_two_is_the_match_s(dense_pair):
@@ -275,10 +274,10 @@ def test_names_must_tell_the_kind_and_be_there(dense_pair, tmp_path):
 def test_operators_export_and_import(dense_pair, tmp_path):
     path = str(tmp_path / "match.npz")
     assert bpy.ops.hiermatch.export_match(filepath=path, source="Source", target="Target") == {"FINISHED"}
-    maps = maps_of(dense_pair[1])
+    maps = map_values(dense_pair[1])
     bpy.ops.hiermatch.clear(object="Source")
     assert bpy.ops.hiermatch.import_match(filepath=path, source="Source", target="Target") == {"FINISHED"}
-    assert maps_of(dense_pair[1]) == maps
+    assert map_values(dense_pair[1]) == maps
     summary = bpy.context.scene.hiermatch.summary
     assert (summary.source, summary.target, summary.prefix) == ("Source", "Target", "HM")
     assert summary.verdict

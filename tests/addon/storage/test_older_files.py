@@ -15,7 +15,8 @@ import pytest
 from hiermatch.hiermatch_addon.properties import freshness
 from hiermatch.hiermatch_addon.storage.match_exchange import apply_match, collect_match
 from hiermatch.hiermatch_addon.storage.match_file import load_match
-from hiermatch.hiermatch_addon.storage.stored_map import stored_map
+
+from tests.addon.scenes import maps_of
 
 FILES = Path(__file__).parent / "files_0_1"
 
@@ -32,7 +33,7 @@ def test_a_stored_match_is_up_to_date_and_can_be_used(pair):
     freshness.refresh(bpy.context.scene)
     summary = bpy.context.scene.hiermatch.summary
     assert not summary.stale
-    found = stored_map(bpy.context, *pair)
+    found = maps_of(*pair)
     assert found.target_to_source.confidence.max() > 0.5
     images = found.source_to_target.points.positions
     expected = np.array([pair[1].matrix_world @ vertex.co for vertex in pair[1].data.vertices])
@@ -53,9 +54,9 @@ def test_a_stored_match_carries_weights(pair):
 
 
 def test_the_other_answer_is_there_still(pair):
-    before = stored_map(bpy.context, *pair).source_to_target.triangles
+    before = maps_of(*pair).source_to_target.triangles
     assert bpy.ops.hiermatch.flip(object="Source") == {"FINISHED"}
-    assert (stored_map(bpy.context, *pair).source_to_target.triangles != before).mean() > 0.5
+    assert (maps_of(*pair).source_to_target.triangles != before).mean() > 0.5
 
 
 @pytest.mark.parametrize("suffix", ["npz", "json"])

@@ -15,10 +15,10 @@ from hiermatch.hiermatch_addon.scene.posing.before_after import is_before
 from hiermatch.hiermatch_addon.storage.halves import find_common, find_half
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, find_landmarks
 from hiermatch.hiermatch_addon.storage.match_exchange import apply_match, collect_match
-from hiermatch.hiermatch_addon.storage.stored_map import find_maps, stored_map
+from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 
 from tests.addon.rigs import POSE, add_rigged, add_target, pose, split_up
-from tests.addon.scenes import DENSE, MAP_ATTRIBUTES, mesh_snapshot
+from tests.addon.scenes import DENSE, MAP_ATTRIBUTES, maps_of, mesh_snapshot
 from tests.skeletons import CONTROLS, CREATURE_BONES
 
 SOURCE, TARGET = "Source Rig", "Figure"
@@ -166,7 +166,7 @@ class TestStoredMatch:
             assert obj in parts_of(half.obj)
             assert not half.staleness()
         assert find_half(targets[1]).obj.parts == targets
-        maps = stored_map(bpy.context, side(SOURCE), side(TARGET))
+        maps = maps_of(side(SOURCE), side(TARGET))
         assert maps.target.vertex_count == sum(len(obj.data.vertices) for obj in targets)
 
     def test_an_edit_of_any_part_makes_it_stale(self, targets):
