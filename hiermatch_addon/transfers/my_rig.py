@@ -30,7 +30,7 @@ from ..scene.armature_copy import copy_to, move_joints, repoint
 from ..scene.armatures import armature_of, bone_normals, find_armature, moving_armatures, read_rig, read_skeleton
 from ..scene.binding import bind, hang_in_place, lost_poses, replaced_remarks, unbind
 from ..scene.bone_constraints import adapt_constraints, displaced_notes
-from ..scene.character import parts_of, read_surface, vertex_ranges
+from ..scene.character import parts_of, read_surface
 from ..scene.deform_layer import check_weights_writable
 from ..scene.key_drivers import counterparts
 from ..scene.motion.rigs import check_armature
@@ -232,7 +232,5 @@ class MyRigTransfer(Transfer):
         """Write the groups of the bones that move something, and return what to say of it."""
         weights = cast("csr_array", self._weights).tocsc()
         written = np.flatnonzero((np.diff(weights.indptr) > 0) & ~self._held)
-        wanted, result = [self._names[number] for number in written], weights[:, written].tocsr()
-        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
-            write_groups(part, wanted, csr_array(result[own]), every=False)
-        return counted(len(wanted), "vertex group")
+        write_groups(target, [self._names[number] for number in written], weights[:, written].tocsr())
+        return counted(len(written), "vertex group")

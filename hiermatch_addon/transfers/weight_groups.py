@@ -11,7 +11,7 @@ from scipy.sparse import csr_array, vstack
 from ..common.access import mesh_of
 from ..common.errors import NothingToCarryError, ObjectError
 from ..scene.armatures import armature_of, bone_of, find_armature, pose_of
-from ..scene.character import parts_of
+from ..scene.character import parts_of, vertex_ranges
 from ..scene.deform_layer import read_weights, write_weights
 from ..storage.written_names import written_names
 
@@ -102,11 +102,13 @@ def locked_groups(side: Side) -> set[str]:
     return {group.name for part in parts_of(side) for group in part.vertex_groups if group.lock_weight}
 
 
-def write_groups(obj: bpy.types.Object, names: Sequence[str], weights: csr_array, *, every: bool) -> None:
-    """Write groups (n, g) on one part: unless `every` is wanted, those only that have weight there, or are there."""
-    held = np.bincount(weights.tocoo().coords[1], minlength=len(names)) > 0
-    kept = [number for number, name in enumerate(names) if every or held[number] or name in obj.vertex_groups]
-    write_weights(obj, [names[number] for number in kept], csr_array(weights[:, kept]))
+def write_groups(side: Side, names: Sequence[str], weights: csr_array, *, every: bool = False) -> None:
+    """Write groups (n, g): unless `every` is wanted, on each part those only that have weight there, or are there."""
+    for part, own in zip(parts_of(side), vertex_ranges(side), strict=True):
+        found = csr_array(weights[own])
+        held = np.bincount(found.tocoo().coords[1], minlength=len(names)) > 0
+        kept = [number for number, name in enumerate(names) if every or held[number] or name in part.vertex_groups]
+        write_weights(part, [names[number] for number in kept], csr_array(found[:, kept]))
 
 
 def group_columns(side: Side, names: Sequence[str], chosen: NDArray[np.bool_] | None = None) -> csr_array:

@@ -142,8 +142,8 @@ class WeightTransfer(Transfer):
         numbers = np.flatnonzero(written)
         result = self._result.tocsr()[:, numbers]
         wanted = [names[number] for number in numbers]
-        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
-            write_groups(part, wanted, csr_array(result[own]), every=len(parts_of(target)) == 1)
+        write_groups(target, wanted, result, every=len(parts_of(target)) == 1)
+        for part in parts_of(target):
             self._add_other_sides(source, part)
         if self._settings.mark:
             self._write_mark(target)

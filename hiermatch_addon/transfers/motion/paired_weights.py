@@ -15,7 +15,7 @@ from ...common.phrases import counted, listed
 from ...jobs.transfer import Transfer, TransferReport
 from ...properties.bone_pairs import pairing_notes, pairing_of
 from ...scene.armatures import armature_of, find_armature, read_rig, read_skeleton
-from ...scene.character import parts_of, vertex_ranges
+from ...scene.character import parts_of
 from ...scene.deform_layer import check_weights_writable
 from ...scene.motion.rigs import rig_of
 from ..weight_groups import group_columns, locked_groups, write_groups
@@ -106,9 +106,8 @@ class PairedWeightTransfer(Transfer):
         used = (self._result != 0).sum(axis=0) > 0
         present = {group.name for part in parts_of(target) for group in part.vertex_groups}
         numbers = [number for number in np.flatnonzero(written) if used[number] or task.names[number] in present]
-        wanted, result = [task.names[number] for number in numbers], self._result.tocsr()[:, numbers]
-        for part, own in zip(parts_of(target), vertex_ranges(target), strict=True):
-            write_groups(part, wanted, csr_array(result[own]), every=False)
+        wanted = [task.names[number] for number in numbers]
+        write_groups(target, wanted, self._result.tocsr()[:, numbers])
         held = [task.names[number] for number in np.flatnonzero(task.columns.locked)]
         notes = [f'Locked vertex groups of "{target.name}" were left alone: {listed(held)}.'] if held else []
         notes += pairing_notes(cast("bpy.types.Scene", context.scene), rig_of(source), rig_of(target))
