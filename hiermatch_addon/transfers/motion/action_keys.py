@@ -19,11 +19,10 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-    from ....engine import BonePairing, TransferredMotion
+    from ....engine import BonePairing, Skeleton, TransferredMotion
     from ...scene.motion.source_keys_io import ActionKeys, CurveKeys, Cycle
 
 __all__ = [
-    "LOCATION",
     "BoneChannels",
     "Movers",
     "baked_frames",
@@ -44,7 +43,7 @@ _DIGITS = 4
 _ALIKE = 0.01
 """Angle in radians up to which two rotations count as the same one: half a degree, which no one sees as a jump."""
 
-LOCATION = 0.25
+_LOCATION = 0.25
 """What a tolerance of one radian means for a location, in units of the rig's extent: about the length of a limb."""
 
 
@@ -64,20 +63,29 @@ class BoneChannels:
     values: NDArray[np.float64]
     coarseness: float
 
+    @classmethod
+    def of_turns(cls, bone: bpy.types.PoseBone, turns: NDArray[np.float64]) -> BoneChannels:
+        """Make the channel of turns (f, 3, 3), in the rotation mode that the bone has."""
+        mode = bone.rotation_mode
+        coarseness = 0.5 if mode == "QUATERNION" else 1.0  # a quaternion turns by half the angle
+        return cls(bone.name, rotation_channel(mode), rotation_channels(turns, mode), coarseness)
+
+    @classmethod
+    def of_places(cls, bone: bpy.types.PoseBone, places: NDArray[np.float64], tree: Skeleton) -> BoneChannels:
+        """Make the channel of places (f, 3); `tree` are all bones."""
+        return cls(bone.name, "location", places, _LOCATION * float(np.ptp(tree.joints, axis=0).max()))
+
 
 def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[BoneChannels]:
     """Make the channels of an armature's bones of its motion, in the rotation modes that the bones have."""
     local = local_poses(found.motion, armature)
     tree = own_skeleton(armature)
-    extent = float(np.ptp(tree.joints, axis=0).max())
     channels = []
     for number, bone in enumerate(pose_of(armature).bones):
         if found.moved[number]:
-            values = rotation_channels(local.rotations[:, number], bone.rotation_mode)
-            coarse = 0.5 if bone.rotation_mode == "QUATERNION" else 1.0  # a quaternion turns by half the angle
-            channels.append(BoneChannels(bone.name, rotation_channel(bone.rotation_mode), values, coarse))
+            channels.append(BoneChannels.of_turns(bone, local.rotations[:, number]))
         if found.placed[number]:
-            channels.append(BoneChannels(bone.name, "location", local.locations[:, number], LOCATION * extent))
+            channels.append(BoneChannels.of_places(bone, local.locations[:, number], tree))
     return channels
 
 

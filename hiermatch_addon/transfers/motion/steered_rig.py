@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....engine import Progress, rotation_channels
+from ....engine import Progress
 from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.armatures import armature_of, pose_of
-from ...scene.motion.action_curves import rotation_channel
 from ...scene.motion.control_pose_io import posed_controls, set_switches
 from ...scene.motion.control_rigs import (
     candidates_of,
@@ -24,7 +23,7 @@ from ...scene.motion.control_rigs import (
 )
 from ...scene.motion.holders import holds
 from ...scene.motion.rigs import own_skeleton, rig_of
-from .action_keys import LOCATION, BoneChannels
+from .action_keys import BoneChannels
 
 if TYPE_CHECKING:
     import bpy
@@ -81,15 +80,11 @@ class SteeredRig:
         pose = pose_of(armature).bones
         locked = {bone.name for bone in pose if any(bone.lock_rotation)}
         tree = own_skeleton(armature)
-        extent = float(np.ptp(tree.joints, axis=0).max())
         made = [each for each in plain if each.bone in self.controls.lost and each.bone not in locked]
         for name, (control, bases) in self._by_control().items():
-            mode = pose[control].rotation_mode
-            coarse = 0.5 if mode == "QUATERNION" else 1.0
-            values = rotation_channels(bases[:, :3, :3], mode)
-            made.append(BoneChannels(control, rotation_channel(mode), values, coarse))
+            made.append(BoneChannels.of_turns(pose[control], bases[:, :3, :3]))
             if name in self.controls.placed:
-                made.append(BoneChannels(control, "location", bases[:, :3, 3], LOCATION * extent))
+                made.append(BoneChannels.of_places(pose[control], bases[:, :3, 3], tree))
         return made
 
     def bases(self, plain: dict[str, NDArray[np.float64]]) -> dict[str, NDArray[np.float64]]:
