@@ -12,13 +12,13 @@ from ..common.access import layout_of, view_layer_of
 from ..common.translated_text import translated
 from ..jobs.job_operator import JobOperator
 from ..jobs.match_job import MatchJob, job_options
-from ..jobs.running import can_start
 from ..properties.freshness import refresh
 from ..properties.panel_state import picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import pick_named, remember
-from ..scene.pair import find_pair, lacking_meshes, left_out_note, name_of, selected_targets
+from ..scene.pair import find_pair, left_out_note, name_of, selected_targets
+from .pair_operator import can_start_on_meshes
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -60,12 +60,7 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode, when no other match is running and there are two meshes."""
-        if not can_start(cls, context):
-            return False
-        lacking = lacking_meshes(view_layer_of(context))
-        if lacking:
-            cls.poll_message_set(lacking)
-        return not lacking
+        return can_start_on_meshes(cls, context)
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the options in the Adjust Last Operation panel."""

@@ -12,9 +12,10 @@ import bpy
 from ..common.access import view_layer_of, window_manager_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
+from ..jobs.running import can_start
 from ..properties.panel_state import picked, state_of
 from ..scene.character import side_of
-from ..scene.pair import active_side, left_out_note, named_side, selected_targets
+from ..scene.pair import active_side, lacking_meshes, left_out_note, named_side, selected_targets
 from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 else:
     _Operator = object
 
-__all__ = ["FileOperator", "PairOperator", "pick_sides"]
+__all__ = ["FileOperator", "PairOperator", "can_start_on_meshes", "pick_sides"]
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
@@ -122,6 +123,16 @@ class FileOperator(_Operator):
             raise ObjectError("No file is named. Choose one.")
         path = Path(bpy.path.abspath(self.filepath))
         return path if path.suffix or not written else path.with_suffix(".json")
+
+
+def can_start_on_meshes(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Tell, and say on the disabled button, whether an operator may start that takes two meshes: see `can_start`."""
+    if not can_start(cls, context):
+        return False
+    lacking = lacking_meshes(view_layer_of(context))
+    if lacking:
+        cls.poll_message_set(lacking)
+    return not lacking
 
 
 def pick_sides(

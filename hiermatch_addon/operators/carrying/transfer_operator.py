@@ -14,16 +14,16 @@ from ...common.redraw import redraw_sidebars
 from ...common.translated_text import translated
 from ...jobs.job_operator import JobOperator
 from ...jobs.match_job import job_options
-from ...jobs.running import can_start, start_soon
+from ...jobs.running import start_soon
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...panels.question import draw_question
 from ...properties.freshness import refresh
 from ...properties.panel_state import progress_of, state_of
 from ...properties.summary import pick_named, remember
-from ...scene.pair import lacking_meshes, name_of
+from ...scene.pair import name_of
 from ...storage.writing import LONGEST_PREFIX
 from ...transfers.retarget_properties import remember_transfer
-from ..pair_operator import pick_sides
+from ..pair_operator import can_start_on_meshes, pick_sides
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -110,13 +110,7 @@ class TransferOperator(JobOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Allow it in Object Mode, when nothing else is running and there are two meshes."""
-        operator = cast("type[bpy.types.Operator]", cls)
-        if not can_start(operator, context):
-            return False
-        lacking = lacking_meshes(view_layer_of(context))
-        if lacking:
-            operator.poll_message_set(lacking)
-        return not lacking
+        return can_start_on_meshes(cast("type[bpy.types.Operator]", cls), context)
 
     def _start(self, context: bpy.types.Context) -> TransferJob | MotionJob:
         """Read all objects."""
