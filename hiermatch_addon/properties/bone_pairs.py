@@ -148,7 +148,7 @@ def held_pairs(
 
     Rows whose bones there are no more count for nothing.
     """
-    numbers = [{bone.name: number for number, bone in enumerate(armature_of(rig).bones)} for rig in (source, target)]
+    numbers = _numbers(source), _numbers(target)
     locked = [row for row in rows_of(scene, source, target) if row.locked and row.target in numbers[1]]
     pairs = [(numbers[0][row.source], numbers[1][row.target]) for row in locked if row.source in numbers[0]]
     return pairs, [numbers[1][row.target] for row in locked if not row.source]
@@ -189,7 +189,7 @@ def pairing_of(scene: bpy.types.Scene, source: bpy.types.Object, target: bpy.typ
     ObjectError
         If there is none.
     """
-    numbers = [{bone.name: number for number, bone in enumerate(armature_of(rig).bones)} for rig in (source, target)]
+    numbers = _numbers(source), _numbers(target)
     rows = _present(rows_of(scene, source, target), source, target)
     if not rows:
         raise ObjectError(f'No bones of "{source.name}" and "{target.name}" are paired. Pair their bones first.')
@@ -360,6 +360,11 @@ class _Changes:
     def placed(self, place: Any) -> NDArray[np.float64]:  # noqa: ANN401 - a vector of Blender's
         """Return where a place in the target is now."""
         return self._linear @ np.array(place, np.float64) + self._translation
+
+
+def _numbers(armature: bpy.types.Object) -> dict[str, int]:
+    """Return the number of each bone by its name."""
+    return {bone.name: number for number, bone in enumerate(armature_of(armature).bones)}
 
 
 def _present(rows: Sequence[Any], source: bpy.types.Object, target: bpy.types.Object) -> list[Any]:
