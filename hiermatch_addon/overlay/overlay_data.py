@@ -150,7 +150,7 @@ class Drawing:
 
 def preview_points(preview: Preview) -> PointCloud:
     """Show corresponding places of two surfaces in the same colour, that of the place on the source."""
-    colors = np.column_stack([match_colors(preview.source), np.ones(len(preview.source))])
+    colors = _with_alpha(match_colors(preview.source), 1.0)
     both = np.concatenate([preview.source, preview.target])
     return PointCloud(_buffer(both), _buffer(np.concatenate([colors, colors])), _LANDMARK)
 
@@ -227,15 +227,9 @@ def drawing(
         points.append(_points(pairs, shades, _POINT))
     points.append(_points(landmarks, marks, _LANDMARK))
     if shown.points and pairs.chosen >= 0:
-        points += [
-            _points(_row(pairs), _one(_SELECTED), _CHOSEN),
-            _points(_row(pairs), shades[[pairs.chosen]], _CHOSEN - 5),
-        ]
+        points += _ringed(pairs, shades)
     if landmarks.chosen >= 0:
-        points += [
-            _points(_row(landmarks), _one(_SELECTED), _CHOSEN),
-            _points(_row(landmarks), marks[[landmarks.chosen]], _CHOSEN - 5),
-        ]
+        points += _ringed(landmarks, marks)
     if pending is not None:
         points.append(PointCloud(_buffer(np.array([pending])), _buffer(_one(_PENDING)), _CHOSEN))
     if shown.labels:
@@ -304,6 +298,12 @@ def _with_alpha(colors: NDArray[np.float64], alpha: float) -> NDArray[np.float64
 def _points(marks: Marks, colors: NDArray[np.float64], width: float) -> PointCloud:
     positions = np.concatenate([marks.source, marks.target])
     return PointCloud(_buffer(positions), _buffer(np.concatenate([colors, colors])), width)
+
+
+def _ringed(marks: Marks, colors: NDArray[np.float64]) -> list[PointCloud]:
+    """Draw the active pair larger, with a ring around it."""
+    row = _row(marks)
+    return [_points(row, _one(_SELECTED), _CHOSEN), _points(row, colors[[marks.chosen]], _CHOSEN - 5)]
 
 
 def _lines(marks: Marks, colors: NDArray[np.float64], width: float) -> Lines:
