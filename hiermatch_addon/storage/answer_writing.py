@@ -40,11 +40,9 @@ class Restored:
 
 def restored(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> Restored:
     """Put the points of the chosen answer on the meshes, without measuring anything there."""
-    sides = (stored.source_points, stored.answer.target_points)
-    source, target = (
-        place_points(mesh, points.corners, points.barycentric) for mesh, points in zip(meshes, sides, strict=True)
-    )
-    return Restored(source, target, stored.answer.point_distortion)
+    answer = stored.answer
+    source, target = place_points(meshes[0], stored.source_points), place_points(meshes[1], answer.target_points)
+    return Restored(source, target, answer.point_distortion)
 
 
 def following_steps(

@@ -17,6 +17,7 @@ from ...engine import ClosestPoints, MeshError, SurfaceMap, SurfacePoints
 from ..common.access import mesh_of
 from ..scene.attribute_io import read_values
 from ..scene.character import parts_of
+from .stored_match import CornerPoints
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -127,7 +128,7 @@ class VertexMap:
         known = (self.confidence >= 0).all() and (self.confidence <= 1).all()
         if not (inside and known and (total > 0).all() and np.isfinite(total).all()):
             raise MeshError("The attributes of the stored map hold numbers that no match has written. Match again.")
-        points = place_points(image, self.corners.astype(np.int64), weights / total)
+        points = place_points(image, CornerPoints(self.corners.astype(np.int64), weights / total))
         return SurfaceMap.from_points(image, points, self.confidence.astype(np.float64), self.has_partner)
 
 
@@ -197,15 +198,14 @@ def add_maps(prepared: tuple[Content, Content], prefix: str, kept: Sequence[Stor
                 content.values.update(vertex_map.attributes(map_name(prefix, place)))
 
 
-def place_points(mesh: TriangleMesh, corners: NDArray[np.int64], barycentric: NDArray[np.float64]) -> SurfacePoints:
-    """Put points, given by vertices (k, 3) and barycentric coordinates (k, 3), on a mesh as it is triangulated now."""
+def place_points(mesh: TriangleMesh, points: CornerPoints) -> SurfacePoints:
+    """Put points on a mesh as it is triangulated now."""
     try:
-        return SurfacePoints.from_corners(mesh, corners, barycentric)
+        return SurfacePoints.from_corners(mesh, points.corners, points.barycentric)
     except MeshError:
         # Blender cuts a face with more than three corners in another way once it is bent.
-        nearest = np.take_along_axis(corners, barycentric.argmax(axis=1)[:, None], axis=1)[:, 0]
-        positions = np.einsum("kc,kcd->kd", barycentric, mesh.vertices[corners])
-        found = ClosestPoints(mesh).walk(positions, nearest)
+        positions = np.einsum("kc,kcd->kd", points.barycentric, mesh.vertices[points.corners])
+        found = ClosestPoints(mesh).walk(positions, points.nearest_vertices)
         return SurfacePoints.from_barycentric(mesh, found.triangles, found.barycentric)
 
 

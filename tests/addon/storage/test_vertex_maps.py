@@ -12,6 +12,7 @@ from hiermatch.engine import MeshError, SurfacePoints, TriangleMesh
 from hiermatch.hiermatch_addon.scene.attribute_io import add_values
 from hiermatch.hiermatch_addon.scene.mesh_io import read_mesh
 from hiermatch.hiermatch_addon.storage.contents import Content
+from hiermatch.hiermatch_addon.storage.stored_match import CornerPoints
 from hiermatch.hiermatch_addon.storage.vertex_maps import StoredMaps, VertexMap, add_maps, map_name, place_points
 
 from tests.addon.scenes import MAP_ATTRIBUTES, add_pair, made_up_maps
@@ -131,13 +132,13 @@ def test_the_answer_that_is_not_shown_has_names_of_its_own(kept):
 class TestPlacePoints:
     def test_as_they_are(self, meshes):
         points = SurfacePoints.from_barycentric(meshes[0], np.array([3, 1, 4]), np.eye(3) * 0.7 + 0.1)
-        placed = place_points(meshes[0], points.corners, points.barycentric)
+        placed = place_points(meshes[0], CornerPoints.of(points))
         assert same(placed, points)
 
     def test_a_face_that_is_cut_otherwise_now(self):
         corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0.0]])
         mesh = TriangleMesh(corners, [(0, 1, 2), (0, 2, 3), (1, 4, 2)])
         weights = np.array([[0.25, 0.25, 0.5], [0.2, 0.3, 0.5]])
-        placed = place_points(mesh, np.array([[0, 1, 3], [1, 4, 2]]), weights)
+        placed = place_points(mesh, CornerPoints(np.array([[0, 1, 3], [1, 4, 2]]), weights))
         assert placed.positions == pytest.approx(np.array([[0.25, 0.5, 0], [1.3, 0.5, 0]]))
         assert placed.triangles.tolist() == [1, 2]
