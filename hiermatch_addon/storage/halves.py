@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = [
     "MIRRORED",
     "Half",
+    "check_fresh",
     "find_again",
     "find_carriers",
     "find_common",
@@ -121,6 +122,13 @@ class Half:
         """What is kept, without a copy of it."""
         first = parts_of(self.obj)[0]
         return writing.kept(first, self.prefix) if first.type == "MESH" else {}
+
+
+def check_fresh(halves: tuple[Half, Half]) -> None:
+    """Make sure that neither mesh was edited since."""
+    for half in halves:
+        if stale := half.staleness():
+            raise ObjectError(stale)
 
 
 def is_mirrored(obj: bpy.types.Object) -> bool:

@@ -10,7 +10,7 @@ from ...engine import run
 from ..common.errors import ObjectError
 from ..scene.character import read_surface
 from .answer_writing import mapped_contents_steps, write_answer
-from .halves import find_common, in_order
+from .halves import check_fresh, find_common, in_order
 from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name, read_all_maps
 
@@ -76,9 +76,7 @@ def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
         prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
         raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
     (halves,) = found
-    for half in halves:
-        if stale := half.staleness():
-            raise ObjectError(stale)
+    check_fresh(halves)
     first, second = in_order(*halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
     if not stored.written.dense:

@@ -13,7 +13,7 @@ from ...common.errors import ObjectError
 from ...scene.character import parts_of, read_surface
 from .. import writing
 from ..contents import Content
-from ..halves import in_order
+from ..halves import check_fresh, in_order
 from ..stored_match import StoredMatch
 from ..vertex_maps import StoredMaps, map_name
 from . import colors
@@ -73,7 +73,7 @@ def prepare_view(context: bpy.types.Context, halves: tuple[Half, Half], view: st
     """
     name = attribute_of(halves[0].prefix, view)
     if view in _MADE:
-        _check_fresh(halves)
+        check_fresh(halves)
         shades = _MADE[view](context, halves)
         _write(halves, [Content(colors={name: colors.opaque(colors.to_linear(shade))}) for shade in shades])
         return
@@ -100,7 +100,7 @@ def region_groups(context: bpy.types.Context, halves: tuple[Half, Half]) -> int:
     HierMatchError
         If they cannot be found, or vertex groups of the user's own are in the way; nothing is written then.
     """
-    _check_fresh(halves)
+    check_fresh(halves)
     prefix, found = halves[0].prefix, _region_numbers(context, halves)
     contents = []
     for numbers in found:
@@ -111,13 +111,6 @@ def region_groups(context: bpy.types.Context, halves: tuple[Half, Half]) -> int:
         contents.append(Content(groups=groups))
     _write(halves, contents)
     return len(contents[0].groups)
-
-
-def _check_fresh(halves: tuple[Half, Half]) -> None:
-    """Make sure that neither mesh was edited since."""
-    for half in halves:
-        if stale := half.staleness():
-            raise ObjectError(stale)
 
 
 def _write(halves: tuple[Half, Half], contents: list[Content]) -> None:
