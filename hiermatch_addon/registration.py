@@ -91,8 +91,6 @@ from .properties.viewport_shading import start_following, stop_following
 from .transfers.options.wear import HIERMATCH_PG_worn
 from .transfers.retarget_properties import HIERMATCH_PG_report, HIERMATCH_PG_retarget
 
-__all__ = ["CLASSES", "register", "unregister"]
-
 CLASSES: Final[tuple[type[Any], ...]] = (
     HIERMATCH_PG_summary,
     HIERMATCH_PG_scene,

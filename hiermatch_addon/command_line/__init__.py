@@ -12,8 +12,6 @@ from .command import COMMAND
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["register_command", "run_command", "unregister_command"]
-
 _handles: Final[list[Any]] = []
 """The one thing that Blender hands out and nobody else keeps: without it the command cannot be unregistered."""
 

@@ -8,8 +8,6 @@ from typing import Final
 
 from ...engine import HierMatchError
 
-__all__ = ["COMMAND", "EXIT_CODES", "ExitCode", "UsageError"]
-
 COMMAND: Final = "hiermatch"
 """What follows ``blender --command``."""
 

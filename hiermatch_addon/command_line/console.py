@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from ..jobs.job_operator import Job
 
-__all__ = ["Console", "Interruption", "drive", "interruptible"]
-
 _OUTPUT, _ERRORS = 1, 2
 """Numbers of the standard streams."""
 

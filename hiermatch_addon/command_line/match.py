@@ -30,17 +30,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = [
-    "add_commands",
-    "add_output_option",
-    "add_pair_arguments",
-    "add_result_options",
-    "load_pair",
-    "save_outputs",
-    "save_results",
-    "warn_if_nothing_is_written",
-]
-
 
 def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
     """Add it."""

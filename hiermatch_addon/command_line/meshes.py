@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["MeshArgument", "has_operator", "load_meshes", "mesh_argument"]
-
 _IMPORTERS: Final[dict[str, tuple[str, ...]]] = {
     ".obj": ("wm.obj_import",),
     ".ply": ("wm.ply_import",),

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from .console import Console
     from .reports import Report
 
-__all__ = ["add_commands"]
-
 
 def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
     """Add it."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["said_by"]
-
 
 def said_by(error: Exception) -> str:
     """Return what an operator said when it failed.

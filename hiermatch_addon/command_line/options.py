@@ -19,8 +19,6 @@ from .command import UsageError
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
 
-__all__ = ["Parser", "add_options", "chosen_options", "given_options", "option_names", "quoted_names", "to_arguments"]
-
 _OBJECTS = frozenset({"rna_type", "source", "target", "targets", "object"})
 """Properties that name objects: on the command line they are arguments."""
 

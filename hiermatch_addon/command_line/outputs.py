@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["KINDS", "MOVING_KINDS", "output_argument", "save"]
-
 _EXPORTERS: Final[dict[str, tuple[str, dict[str, Any]]]] = {
     ".obj": ("wm.obj_export", {"export_selected_objects": True, "apply_modifiers": False, "path_mode": "ABSOLUTE"}),
     ".ply": ("wm.ply_export", {"export_selected_objects": True, "apply_modifiers": False}),

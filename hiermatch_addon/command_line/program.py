@@ -15,8 +15,6 @@ from .options import Parser
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["main", "make_parser"]
-
 _DESCRIPTION = """\
 Find dense correspondence of two meshes in any pose, and carry rigs, weights, shape keys, UV maps, attributes and motion
 across it.  FILE is a .blend, .obj, .ply, .stl, .fbx, .glb, .gltf or .vrm file.  FILE:NAME names a mesh in it, an

@@ -31,18 +31,6 @@ if TYPE_CHECKING:
     from ..storage.stored_match import StoredMatch
     from .meshes import MeshArgument
 
-__all__ = [
-    "FORMAT",
-    "STATUSES",
-    "Report",
-    "add_least_confidence",
-    "add_report_options",
-    "as_json",
-    "confidence_of",
-    "file_state",
-    "run_reported",
-]
-
 FORMAT = "hiermatch-report"
 """What every report says it is."""
 

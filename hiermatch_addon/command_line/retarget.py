@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     _Pair: TypeAlias = tuple[Side, Side]
     _Start: TypeAlias = Callable[[Any, _Pair, TransferOptions], TransferJob | MotionJob]
 
-__all__ = ["NOT_OF_THE_MATCH", "add_commands", "run_transfers", "transferring"]
-
 NOT_OF_THE_MATCH = frozenset({"prefix", "dense", "use_modifiers"})
 """Options of a match that retargeting decides itself, or has under the same name."""
 

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from .command import ExitCode
     from .console import Console
 
-__all__ = ["add_commands"]
-
 
 def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
     """Add it."""

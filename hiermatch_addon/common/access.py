@@ -15,16 +15,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = [
-    "group_of",
-    "layout_of",
-    "mesh_of",
-    "open_collections",
-    "options_layout",
-    "view_layer_of",
-    "window_manager_of",
-]
-
 
 def view_layer_of(context: bpy.types.Context) -> bpy.types.ViewLayer:
     """Return the view layer."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from ...engine import HierMatchError
 
-__all__ = ["DoubtfulMatchError", "NothingToCarryError", "ObjectError", "SharedMeshError"]
-
 
 class ObjectError(HierMatchError):
     """An object that cannot be matched or written to as it stands; the message says why and what to do."""

@@ -13,8 +13,6 @@ from .errors import ObjectError
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["BAD_FILE", "parsed_json", "read_text"]
-
 BAD_FILE: Final = (
     ValueError,
     OverflowError,

@@ -16,8 +16,6 @@ from .errors import ObjectError
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["beside", "check_place", "check_whole", "write_whole"]
-
 _BEHIND: Final = 1 << 20
 """Bytes that must fit behind what Blender wrote: more than the largest block of a file system, so that a disk that had
 no room for the end of a file has none for these."""

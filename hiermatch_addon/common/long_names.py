@@ -7,8 +7,6 @@ import hashlib
 
 import bpy
 
-__all__ = ["LONGEST_ID", "LONGEST_KEY", "shortened"]
-
 LONGEST_ID = bpy.types.ID.bl_rna.properties["name"].length_max - 1  # type: ignore[attr-defined]  # of a text
 """Bytes in the name of an object or an action, at most: 63 until Blender 4.5, 255 from 5.0 on."""
 

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["counted", "listed", "not_ours"]
-
 _THINGS: Final = {
     "action": ("1 action", "{0} actions"),
     "attribute": ("1 attribute", "{0} attributes"),

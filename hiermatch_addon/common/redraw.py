@@ -10,8 +10,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["redraw_sidebars", "redraw_views"]
-
 
 def redraw_sidebars(manager: bpy.types.WindowManager) -> None:
     """Ask for the sidebars of the 3D viewports, which hold the panels, to be drawn again, and for nothing else."""

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["flipped_name", "partners", "side_of"]
-
 
 def flipped_name(name: str) -> str:
     """Return the name of the same thing on the other side; the name itself if it has no side.

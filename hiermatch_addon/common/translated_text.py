@@ -17,8 +17,6 @@ import bpy
 
 from .translations import CONTEXT, LANGUAGES
 
-__all__ = ["translated"]
-
 
 def translated(text: str) -> str:
     """Return a text in the language of the interface.

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["add_modifier", "build_body"]
-
 Point = tuple[float, float, float]
 
 # Width of the voxels that melt the parts together, and how often their steps are smoothed away.

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 
     from .demo_skeleton import Pose
 
-__all__ = ["REST_ATTRIBUTE", "SOURCE_NAME", "TARGET_NAME", "add_demo_pair", "build_cats"]
-
 REST_ATTRIBUTE: Final = "hm_rest"
 """Name of the attribute with the place of each vertex in the rest pose, common to both cats."""
 

@@ -15,8 +15,6 @@ from .demo_skeleton import BONES, STANDING, set_pose
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["LEAST_WEIGHT", "RIG_NAME", "posed_joints", "rig_cat"]
-
 RIG_NAME: Final = "Demo Cat Rig"
 
 LEAST_WEIGHT = 1e-4

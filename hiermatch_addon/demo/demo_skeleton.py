@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["BONES", "STANDING", "WALKING", "Bone", "Pose", "bone_weights", "build_armature", "set_pose"]
-
 Point = tuple[float, float, float]
 
 Pose = dict[str, tuple[float, float, float]]

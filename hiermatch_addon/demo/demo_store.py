@@ -16,8 +16,6 @@ from .demo_rig import LEAST_WEIGHT
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["STORED_SIZES", "Cat", "load_cats", "save_cats"]
-
 STORED_SIZES: Final = (5500, 4000)
 """About how many vertices the stored cats have, the standing one first."""
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ..storage.contents import Content
     from ..storage.halves import Half
 
-__all__ = ["FlipJob"]
-
 _MAPPED = 0.95
 """Where on the bar of progress the making of dense maps ends."""
 

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 else:
     _Operator = object
 
-__all__ = ["Job", "JobOperator"]
-
 _SLICE = 0.05
 """Seconds of work between two events, so that the window stays responsive."""
 

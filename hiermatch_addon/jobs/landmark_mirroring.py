@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.landmarks import Landmark
 
-__all__ = ["MirrorJob"]
-
 _MIDDLE = 0.02
 """A place that is not farther from its mirror image, in sqrt(area), is called the middle."""
 

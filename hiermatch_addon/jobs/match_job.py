@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     from ..storage.contents import Content
     from ..storage.vertex_maps import MapPair
 
-__all__ = ["JobOptions", "MatchJob", "Outcome", "job_options"]
-
 _BY_RIGS = "The shapes have little in common: limbs were taken for the same that both rigs have in the same places."
 
 _MATCHED = 0.98

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from ...engine import KnownShapes, close_helpers
 
-__all__ = ["forget_shapes", "known_shapes"]
-
 
 class _Session:
     """What is known; another process has shapes of its own by it."""

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ...engine import Steps
     from ..storage.halves import Half
 
-__all__ = ["RefineJob"]
-
 
 class RefineJob(RewritingJob):
     """Refines the match that two meshes carry around their landmarks.

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ..storage.halves import Half
     from ..storage.stored_match import StoredMatch
 
-__all__ = ["RewritingJob"]
-
 
 class RewritingJob(SteppedJob):
     """What jobs have in common that write a stored match anew.

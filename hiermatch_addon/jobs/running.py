@@ -10,8 +10,6 @@ import bpy
 from ..common.access import window_manager_of
 from ..common.translated_text import translated
 
-__all__ = ["can_start", "is_idle", "is_running", "modal_operators", "running_panel", "start_soon"]
-
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
     """Return whether one of our operators runs modally in a window."""

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ...engine import Preview
 
-__all__ = ["preview", "show_preview"]
-
 _shown: list[Preview] = []
 """At most one: only one job runs at a time."""
 

@@ -13,8 +13,6 @@ from ...engine import Background, Progress
 if TYPE_CHECKING:
     from ...engine import Preview, Steps
 
-__all__ = ["SteppedJob"]
-
 
 class SteppedJob(ABC):
     """What jobs have in common: a generator that is driven for some time again and again.

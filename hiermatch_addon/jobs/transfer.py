@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.vertex_maps import MapPair
 
-__all__ = ["Passage", "Transfer", "TransferReport"]
-
 
 @dataclass(frozen=True, eq=False)
 class Passage:

@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from .match_job import JobOptions, Outcome
     from .transfer import Transfer
 
-__all__ = ["Carried", "TransferJob", "TransferOptions", "carry_fresh_match"]
-
 _MATCHED, _FITTED = 0.5, 0.85
 """Where on a target's part of the progress bar a match, and the fitting of the rig, end."""
 

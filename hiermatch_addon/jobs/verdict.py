@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.stored_match import Quality
 
-__all__ = ["ANSWERS", "GOOD", "Verdict", "advice_on", "asymmetry_note", "hung_on_bones", "is_half"]
-
 GOOD: Final = 0.7
 """Confidence from which on a match is called good."""
 

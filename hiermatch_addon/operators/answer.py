@@ -15,8 +15,6 @@ from ..properties.panel_state import progress_of
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_answer"]
-
 
 class HIERMATCH_OT_answer(bpy.types.Operator):
     """Say what is to become of a match that is not to be trusted."""

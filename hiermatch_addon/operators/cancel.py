@@ -15,8 +15,6 @@ from ..properties.panel_state import progress_of
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_cancel"]
-
 
 class HIERMATCH_OT_cancel(bpy.types.Operator):
     """End the running match or transfer."""

@@ -23,8 +23,6 @@ from .reported_errors import reporting_errors
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_clear"]
-
 
 class HIERMATCH_OT_clear(bpy.types.Operator):
     """Remove what matches have written on some objects."""

@@ -14,8 +14,6 @@ from ..jobs.running import can_start
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_add_demo_pair"]
-
 
 class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
     """Add a standing and a walking cat to match, with different meshes."""

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["HIERMATCH_OT_export_match"]
-
 
 class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
     """Write the match of two objects into a file."""

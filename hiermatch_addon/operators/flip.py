@@ -23,8 +23,6 @@ from ..storage.halves import Half, find_half, find_keyed
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_flip"]
-
 
 class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
     """Choose between the answers of a match."""

@@ -14,8 +14,6 @@ from ..jobs.running import is_idle
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_forget_shapes"]
-
 
 class HIERMATCH_OT_forget_shapes(bpy.types.Operator):
     """Forget the shapes that were prepared in this session."""

@@ -24,8 +24,6 @@ from .reported_errors import reporting_errors
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_import_match"]
-
 
 class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
     """Write the match that a file holds on two objects."""

@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-__all__ = ["HIERMATCH_OT_match"]
-
-
 class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     """Find corresponding points of two meshes, whatever their pose, and write them on both."""
 

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 else:
     _Operator = object
 
-__all__ = ["FileOperator", "PairOperator", "can_start_on_meshes", "pick_sides"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 _BESIDE_BLEND: Any = (

@@ -20,8 +20,6 @@ from ..properties.summary import remember
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_refine"]
-
 _FAR = 0.25
 """A landmark that is so far, in sqrt(area), from where the map had taken it calls for another map."""
 

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     _Execute = Callable[[Any, bpy.types.Context], set[OperatorReturnItems]]
 
-__all__ = ["reporting_errors"]
-
 
 def reporting_errors(execute: _Execute) -> _Execute:
     """Let the `execute` of an operator end with a report where it raises one of our errors, whose message says why."""

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from ..properties.steering_properties import HIERMATCH_PG_steering
     from ..storage.halves import Half
 
-__all__ = ["HIERMATCH_OT_show", "HIERMATCH_OT_write_regions", "show_colors"]
-
 
 def _match_of(context: bpy.types.Context) -> tuple[Half, Half]:
     """Return the two sides of the match that is shown.

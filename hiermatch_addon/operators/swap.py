@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from ..storage.halves import Half
 
-__all__ = ["HIERMATCH_OT_swap"]
-
 
 class HIERMATCH_OT_swap(bpy.types.Operator):
     """Exchange the picked source and target."""

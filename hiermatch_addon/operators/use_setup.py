@@ -15,8 +15,6 @@ from ..properties.setups import SETUP_ITEMS, use_setup
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_use_setup"]
-
 
 class HIERMATCH_OT_use_setup(bpy.types.Operator):
     """Choose one of the paper's setups."""

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ...engine import Preview
     from .overlay_data import PointCloud
 
-__all__ = ["draw_hovered", "pair_under_mouse", "show_pending", "start_overlay", "stop_overlay"]
-
 _gpu: Any = gpu  # whose functions Blender's stubs declare to return nothing
 
 _BIAS = 2e-4

@@ -16,8 +16,6 @@ from .drawing import draw_hovered, pair_under_mouse
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_GGT_hover", "HIERMATCH_GT_hover"]
-
 
 class HIERMATCH_GT_hover(bpy.types.Gizmo):
     """The pair of places under the mouse."""

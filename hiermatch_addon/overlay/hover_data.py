@@ -13,8 +13,6 @@ from .overlay_data import Drawing, project
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Hovered", "hovered", "pointed_at"]
-
 
 @dataclass(frozen=True, eq=False)
 class Hovered:

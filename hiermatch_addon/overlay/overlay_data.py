@@ -18,20 +18,6 @@ if TYPE_CHECKING:
 
     from ...engine import Preview
 
-__all__ = [
-    "Drawing",
-    "Label",
-    "Lines",
-    "Marks",
-    "Places",
-    "PointCloud",
-    "Shown",
-    "drawing",
-    "place",
-    "preview_points",
-    "project",
-]
-
 _POINT, _LANDMARK, _CHOSEN = 6.0, 9.0, 13.0
 """Widths of points, in pixels at normal interface scale."""
 

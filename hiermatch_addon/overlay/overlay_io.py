@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["drawn_objects", "read_drawing", "settings", "signature"]
-
 
 def settings(
     scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, pending: tuple[str, int] | None

@@ -17,8 +17,6 @@ from .progress_bar import draw_starter
 if TYPE_CHECKING:
     from ..properties.properties import HIERMATCH_PG_summary
 
-__all__ = ["HIERMATCH_MT_answers", "draw_answers"]
-
 
 class HIERMATCH_MT_answers(bpy.types.Menu):
     """Write another answer of the match, without matching again."""

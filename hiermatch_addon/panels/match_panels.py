@@ -24,8 +24,6 @@ from .progress_bar import draw_progress
 if TYPE_CHECKING:
     from ..properties.properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary
 
-__all__ = ["HIERMATCH_PT_match"]
-
 _NAME_WIDTH = 3.0
 """Width of the names at the top, narrower than a property split makes them: what they stand before is long."""
 

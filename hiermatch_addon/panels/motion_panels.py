@@ -21,9 +21,6 @@ from .retarget_panels import draw_report
 if TYPE_CHECKING:
     from ..properties.bone_pairs import HIERMATCH_PG_bone_pair
 
-__all__ = ["HIERMATCH_PT_motion", "HIERMATCH_UL_bone_pairs"]
-
-
 _SCORE_WIDTH = 1.7
 """Of the column of scores, in Blender's units of the interface."""
 

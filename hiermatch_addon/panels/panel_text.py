@@ -13,8 +13,6 @@ from ..common.translated_text import translated
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["draw_label", "draw_notes", "draw_text", "letters_across", "shortened", "wrap_text"]
-
 _PIXELS_PER_LETTER = 6.5
 """Width of a letter in a sentence at normal interface scale: a line of twenty fits, whichever they are."""
 

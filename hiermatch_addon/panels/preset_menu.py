@@ -25,15 +25,6 @@ from ..transfers.options.wear import WearOptions
 from ..transfers.options.wrap import WrapOptions
 from ..transfers.retarget_properties import retarget_of
 
-__all__ = [
-    "MATCH_NAMES",
-    "RETARGET_NAMES",
-    "HIERMATCH_OT_add_preset",
-    "HIERMATCH_PT_presets",
-    "register_presets",
-    "unregister_presets",
-]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 _utils: Any = bpy.utils  # of which they do not know all
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["draw_progress", "draw_starter"]
-
 
 def draw_progress(layout: bpy.types.UILayout, context: bpy.types.Context, panel: str) -> bool:
     """Draw the bar and the button that cancels, or in other panels why their buttons wait.

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["draw_question"]
-
 _ICONS: Final = {"LANDMARKS": "EYEDROPPER", "WRITE": "CHECKMARK", "CANCEL": "CANCEL"}
 
 

@@ -23,8 +23,6 @@ from .progress_bar import draw_progress, draw_starter
 if TYPE_CHECKING:
     from ..transfers.retarget_properties import HIERMATCH_PG_retarget
 
-__all__ = ["HIERMATCH_PT_retarget", "HIERMATCH_PT_symmetry", "draw_report"]
-
 _ALONE: Final = {
     "use_rig": "hiermatch.fit_rig",
     "use_weights": "hiermatch.transfer_weights",

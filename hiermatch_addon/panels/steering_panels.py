@@ -21,14 +21,6 @@ from .progress_bar import draw_progress
 if TYPE_CHECKING:
     from ..properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair
 
-__all__ = [
-    "HIERMATCH_PT_landmarks",
-    "HIERMATCH_PT_overlay",
-    "HIERMATCH_PT_pairs",
-    "HIERMATCH_UL_landmarks",
-    "HIERMATCH_UL_pairs",
-]
-
 
 class HIERMATCH_UL_landmarks(bpy.types.UIList):
     """The landmarks of source and target."""

@@ -24,9 +24,6 @@ from .retarget_panels import draw_report
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["HIERMATCH_PT_wear"]
-
-
 _OF_COPIES = frozenset(f"wear_{name}" for name in ("weights", "limit", "normalise", "poses", "keys", "fit_rig"))
 """Options that say nothing of a shape key on the original."""
 

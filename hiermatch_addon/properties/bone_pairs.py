@@ -26,21 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "HIERMATCH_PG_bone_pair",
-    "add_row",
-    "bone_pairs_of",
-    "clear_rows",
-    "held_pairs",
-    "load_pairs",
-    "pairing_notes",
-    "pairing_of",
-    "remove_rows",
-    "rows_of",
-    "save_pairs",
-    "write_pairing",
-]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 _FORMAT, _VERSION = "HierMatch bone pairs", 1

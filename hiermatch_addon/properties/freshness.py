@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ..storage.halves import Half
     from .properties import HIERMATCH_PG_summary
 
-__all__ = ["refresh", "start_watching", "stop_watching"]
-
 _DELAY = 0.3
 """Seconds from an edit to the look at it, so that many edits in a row cost one look."""
 

@@ -10,8 +10,6 @@ if TYPE_CHECKING:
 
     from .properties import HIERMATCH_PG_progress, HIERMATCH_PG_scene, HIERMATCH_PG_summary
 
-__all__ = ["pick", "picked", "progress_of", "state_of", "summary_of"]
-
 
 def state_of(context: bpy.types.Context) -> HIERMATCH_PG_scene:
     """Return the panel's state on the scene."""

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-__all__ = ["HIERMATCH_AP_preferences", "shape_memory"]
-
 _PACKAGE = __name__.rsplit(".", 3)[0]
 """What the extension is called where it is installed."""
 

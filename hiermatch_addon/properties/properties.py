@@ -22,18 +22,6 @@ from .summary import remember_common
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-__all__ = [
-    "OPTION_NAMES",
-    "OUTPUT_NAMES",
-    "SETTING_NAMES",
-    "MatchOptions",
-    "copy_options",
-    "match_settings",
-    "set_settings",
-    "setting_of",
-    "to_identifier",
-]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

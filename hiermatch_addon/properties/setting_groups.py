@@ -10,8 +10,6 @@ from .properties import SETTING_NAMES, setting_of
 if TYPE_CHECKING:
     from .properties import MatchOptions
 
-__all__ = ["APART", "shown_groups"]
-
 APART: Final = ("points", "dense")
 """The settings that stand apart from all others, where they are seen first."""
 

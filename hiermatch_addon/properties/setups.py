@@ -12,8 +12,6 @@ from .properties import set_settings, setting_of, to_identifier
 if TYPE_CHECKING:
     from .properties import MatchOptions
 
-__all__ = ["SETUP_ITEMS", "current_setup", "use_setup"]
-
 
 def _description(setup: str) -> str:
     """Say what a setup sets."""

@@ -23,18 +23,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from ..storage.halves import Half
 
-__all__ = [
-    "check_steered",
-    "common_match",
-    "landmark_label",
-    "pair_rows",
-    "picked_side",
-    "point_name",
-    "steered_pair",
-    "sync_lists",
-]
-
-
 _REVISIONS = 1 << 30
 """After so many changes the count begins anew."""
 

@@ -12,8 +12,6 @@ from ..common.redraw import redraw_views
 from ..storage.landmarks import find_landmarks, rename_landmark
 from .steering_lists import landmark_label, steered_pair
 
-__all__ = ["HIERMATCH_PG_landmark", "HIERMATCH_PG_pair", "HIERMATCH_PG_steering", "steering_of"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

@@ -17,8 +17,6 @@ from .steering_lists import common_match, picked_side
 if TYPE_CHECKING:
     from .properties import HIERMATCH_PG_summary
 
-__all__ = ["is_of_picked", "pick_named", "remember", "remember_common"]
-
 
 def remember(
     summary: HIERMATCH_PG_summary, stored: StoredMatch, names: tuple[str, str], prefix: str, seconds: float

@@ -17,8 +17,6 @@ from bpy.app.handlers import persistent
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["shade_as_before", "shade_by_colors", "start_following", "stop_following"]
-
 _KEPT: Final = "hiermatch_shading"
 """Custom property of a screen: how its viewports were shaded before, by their places in it, as a JSON text."""
 

@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from ...engine import PlacedJoints
 
-__all__ = ["NewBone", "add_bones", "copy_to", "move_joints", "repoint"]
-
 
 @dataclass(frozen=True, eq=False)
 class NewBone:

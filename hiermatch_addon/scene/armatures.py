@@ -23,21 +23,6 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = [
-    "SourceRig",
-    "armature_modifier",
-    "armature_of",
-    "bone_normals",
-    "bone_of",
-    "bone_weights",
-    "find_armature",
-    "held_by",
-    "moving_armatures",
-    "pose_of",
-    "read_rig",
-    "read_skeleton",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class SourceRig:

@@ -16,26 +16,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = [
-    "AttributeLayout",
-    "add_values",
-    "attribute_layouts",
-    "is_blended",
-    "is_free",
-    "is_known",
-    "missing_attribute",
-    "read_attribute",
-    "read_corner_normals",
-    "read_face_materials",
-    "read_polygons",
-    "read_seams",
-    "read_values",
-    "write_attribute",
-    "write_corner_normals",
-    "write_face_materials",
-    "write_seams",
-]
-
 _TYPES: dict[str, tuple[str, type[np.generic], int]] = {
     "FLOAT": ("value", np.float32, 1),
     "FLOAT2": ("vector", np.float32, 2),

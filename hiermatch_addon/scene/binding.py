@@ -19,19 +19,6 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = [
-    "bind",
-    "hand_over",
-    "hang_in_place",
-    "is_made",
-    "lost_poses",
-    "made_rig",
-    "mark_made",
-    "replaced_remarks",
-    "unbind",
-    "worn_with",
-]
-
 _MARKER = "hiermatch_rig_of"
 """Custom property of an armature object that was made for a mesh: the name of the armature it was made after."""
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     import bpy
     from mathutils import Vector
 
-__all__ = ["adapt_constraints", "displaced_bones", "displaced_notes"]
-
 _DISPLACED = 0.02
 """A bone counts as moved if an end of it is away from rest by more than this part of its length: less is the tolerance
 of Blender's IK solver."""

@@ -26,34 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "FITTED_TO",
-    "Character",
-    "Side",
-    "SideReference",
-    "armatures_above",
-    "corner_ranges",
-    "edge_ranges",
-    "face_ranges",
-    "forget_order",
-    "is_of",
-    "joined",
-    "joined_mesh",
-    "keep_order",
-    "own_positions",
-    "parts_of",
-    "positions_of",
-    "read_faces",
-    "read_surface",
-    "side_of",
-    "successor",
-    "take_place",
-    "topology_of",
-    "vertex_count",
-    "vertex_ranges",
-    "whole",
-]
-
 FITTED_TO: Final = "hiermatch_body"
 """Custom property of a fitted copy of clothes: the name of the body that it was fitted to, of which it is no part."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["check_weights_writable", "read_group", "read_weights", "write_weights"]
-
 
 def check_weights_writable(obj: bpy.types.Object) -> None:
     """Make sure that the weights of a mesh object can be written.

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["share_key_action"]
-
 
 def share_key_action(source: bpy.types.Object, target: bpy.types.Object, paths: Collection[str]) -> tuple[str, str]:
     """Let an object's shape keys play the action of another's, if it moves some of those that both have.

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = ["copy_key_drivers", "counterparts", "drive_key", "point_drivers"]
-
 
 def counterparts(
     source: Side,

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["assign_materials", "read_materials"]
-
 
 def read_materials(obj: bpy.types.Object) -> tuple[list[bpy.types.Material | None], NDArray[np.int64]]:
     """Read the materials in the slots of an object, and for each face the number of its slot, (f,).

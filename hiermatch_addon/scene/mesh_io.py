@@ -23,20 +23,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = [
-    "add_colors",
-    "add_vertex_group",
-    "corner_vertices",
-    "face_corner_counts",
-    "position_digest",
-    "read_mesh",
-    "rest_matrix",
-    "topology",
-    "unedited",
-    "vertex_positions",
-    "without_other_vertices",
-]
-
 _topologies: list[dict[int, str]] = []
 """What `topology` has found within each `unedited`, the innermost last."""
 

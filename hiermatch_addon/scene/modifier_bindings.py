@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = ["bind_again"]
-
 _BINDING = {
     "SURFACE_DEFORM": ("is_bound", "surfacedeform_bind"),
     "CORRECTIVE_SMOOTH": ("is_bind", "correctivesmooth_bind"),

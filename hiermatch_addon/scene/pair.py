@@ -19,27 +19,6 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = [
-    "active_side",
-    "check_mode",
-    "check_object",
-    "check_own_mesh",
-    "check_pair",
-    "check_side",
-    "check_writable",
-    "find_pair",
-    "is_own",
-    "is_shared",
-    "lacking_meshes",
-    "left_out_note",
-    "name_of",
-    "named_object",
-    "named_side",
-    "selected_meshes",
-    "selected_targets",
-]
-
-
 _PLUS = " + "
 """What stands between the names of several objects."""
 

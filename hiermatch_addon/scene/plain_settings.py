@@ -10,8 +10,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["written_settings"]
-
 _SHOWN: Final = ("show_", "is_", "open_", "use_pin_to_last", "name", "type", "active")
 """What the names of those members of a modifier begin with that say nothing of what it does."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["keep_pose", "kept_pose", "make_rest_action", "pose_bases", "was_kept"]
-
 _KEPT = "hiermatch_kept as it was"
 """Custom property of armature objects: the action in which the target looks as before it got another rest pose."""
 

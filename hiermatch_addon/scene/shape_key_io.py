@@ -21,24 +21,6 @@ if TYPE_CHECKING:
 
     from .character import Side
 
-__all__ = [
-    "KeySettings",
-    "add_keys",
-    "all_key_names",
-    "can_be_absolute",
-    "check_keys_writable",
-    "key_holder",
-    "key_paths",
-    "key_positions",
-    "key_value_path",
-    "keys_of",
-    "linear_part",
-    "locked_keys",
-    "read_offsets",
-    "shape_key_names",
-    "world_matrix",
-]
-
 _RANGE = 10.0
 """Blender's own bound of the range of a key's value."""
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["Restored", "following_steps", "mapped_contents_steps", "restored", "write_answer"]
-
 
 @dataclass(frozen=True, eq=False)
 class Restored:

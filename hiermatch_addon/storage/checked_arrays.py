@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["MAPS", "CheckedArrays"]
-
 MAPS = ("source_to_target", "target_to_source")
 """What the names of the arrays of the two dense maps start with."""
 

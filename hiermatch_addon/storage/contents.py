@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...engine import Steps
     from .vertex_maps import MapPair
 
-__all__ = ["UNREACHED", "Content", "Correspondence", "Kinds", "Points", "contents_steps"]
-
 _LABEL = "Preparing what is written"
 
 UNREACHED = -1.0

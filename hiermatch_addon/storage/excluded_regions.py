@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["excluded_vertices", "region_names"]
-
 _SHADING = "sharp_face"
 """The attribute of Blender's own that is no region: which faces are shaded flat."""
 

@@ -20,20 +20,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side, SideReference
 
-__all__ = [
-    "MIRRORED",
-    "Half",
-    "check_fresh",
-    "find_again",
-    "find_carriers",
-    "find_common",
-    "find_half",
-    "find_keyed",
-    "is_mirrored",
-    "meant",
-    "moved_by_us",
-]
-
 MIRRORED = "it was mirrored"
 """Why a match is out of date one of whose meshes has been turned over by a negative scale since."""
 

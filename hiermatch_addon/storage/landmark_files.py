@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["landmarks_from_text", "landmarks_to_text"]
-
 _FORMAT = "HierMatch landmarks"
 _VERSION = 1
 

@@ -28,17 +28,6 @@ if TYPE_CHECKING:
 
     from .landmarks import Mark
 
-__all__ = [
-    "LANDMARKS",
-    "check_layer",
-    "has_landmarks",
-    "numbers_in_file",
-    "read_marks",
-    "select_vertices",
-    "selected_vertices",
-    "write_marks",
-]
-
 LANDMARKS = "HM Landmark"
 """Name of the attribute."""
 

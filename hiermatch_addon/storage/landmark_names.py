@@ -11,8 +11,6 @@ from ..scene.character import parts_of
 if TYPE_CHECKING:
     from ..scene.character import Side
 
-__all__ = ["landmark_names", "name_landmark"]
-
 _NAMES: Final = "HM Landmark Names"
 """Custom property of the mesh."""
 

@@ -27,21 +27,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = [
-    "Landmark",
-    "Mark",
-    "add_landmarks",
-    "changed_for_others",
-    "clear_landmarks",
-    "find_landmarks",
-    "landmark_array",
-    "read_marks",
-    "remove_landmark",
-    "rename_landmark",
-    "select_on_side",
-    "switch_landmark",
-]
-
 Mark = tuple[int, bool]
 """The vertex of a landmark on one mesh, and whether the landmark is on."""
 

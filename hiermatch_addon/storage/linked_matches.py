@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
 
-__all__ = ["forget_linked", "has_linked", "keep_linked", "kept_linked", "linked_prefixes", "move_linked"]
-
 _PROPERTY = "hiermatch_linked"
 """Custom property of the mesh of a body's first part: for each prefix a match, as an NPZ file would hold it."""
 

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["apply_match", "collect_match"]
-
 _SPARSE = "The imported match has no dense map: only its points were written, without colors and distortion."
 
 

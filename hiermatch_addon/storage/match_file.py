@@ -34,8 +34,6 @@ if TYPE_CHECKING:
 
     _Read = tuple[Any, Mapping[str, NDArray[Any]], int]  # header, arrays, and bytes of the largest that is not yet read
 
-__all__ = ["FORMAT", "SUFFIXES", "VERSION", "MatchFile", "load_match", "packed_match", "save_match", "unpacked_match"]
-
 FORMAT = "hiermatch-match"
 """What the header of every such file says it is."""
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from .halves import Half
     from .stored_match import Quality
 
-__all__ = ["FoundMaps", "find_maps", "keep_refined"]
-
 
 @dataclass(frozen=True, eq=False)
 class FoundMaps:

@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ...engine import MatchQuality, MatchResult
     from .contents import Points
 
-__all__ = ["Answer", "CornerPoints", "Quality", "StoredMatch", "Written"]
-
 
 @dataclass(frozen=True)
 class Written:

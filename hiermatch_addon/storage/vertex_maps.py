@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .contents import Content
 
-__all__ = ["MapPair", "StoredMaps", "VertexMap", "add_maps", "map_name", "place_points", "read_all_maps"]
-
 
 @dataclass(frozen=True, eq=False)
 class MapPair:

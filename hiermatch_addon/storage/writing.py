@@ -30,22 +30,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .contents import Content
 
-__all__ = [
-    "LONGEST_PREFIX",
-    "MARKER",
-    "change_kept",
-    "check_names",
-    "check_prefix",
-    "clear",
-    "extend",
-    "is_marked",
-    "kept",
-    "prefixes",
-    "records_of",
-    "take_away",
-    "write",
-]
-
 MARKER = "hiermatch"
 """Name of the custom property on a mesh that records what was written."""
 

@@ -12,8 +12,6 @@ from .landmark_layer import LANDMARKS
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["written_names"]
-
 
 def written_names(obj: bpy.types.Object) -> set[str]:
     """Return the names of all that matches wrote on an object and recorded there, and of what keeps its landmarks."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.attributes import AttributeSettings
 
-__all__ = ["SEAMS", "AttributeChoice", "choose_attributes", "taken_note"]
-
 SEAMS = AttributeLayout("uv_seam", "BOOLEAN", "EDGE")
 """Seams as an attribute: what newer versions call them; older ones have them, but not under a name."""
 

@@ -58,8 +58,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.attributes import AttributeSettings
 
-__all__ = ["AttributeTransfer"]
-
 _POINT_MARKS = frozenset({"crease_vert", "bevel_weight_vert"})
 """Attributes of points that mark single ones."""
 

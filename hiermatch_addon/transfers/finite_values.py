@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["leave_out_broken", "without_broken"]
-
 
 def without_broken(values: dict[str, NDArray[Any]], source: Side) -> list[str]:
     """Take out of named arrays of a source's those with values that are not finite; return what is to be said of it.

@@ -46,13 +46,10 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.my_rig import MyRigSettings
 
-__all__ = ["MyRigTransfer", "check_has_body"]
-
 _STANDS = 0.5
 """Part of an armature's deforming bones that lies inside of a body from which on it stands there.  A human metarig that
 was put to the joints of six of MakeHuman's people has 0.73 and more, one that was only moved there, in another pose,
 0.34 at most (`standing_share`)."""
-
 
 _MADE: Final = "hiermatch_my_rig"
 """Custom property of a fitted armature: the names of the one that it was copied from, and of the body, as JSON."""

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from .options.rig import RigSettings
     from .rig import RigTransfer
 
-__all__ = ["RestLikeSource"]
-
 
 class RestLikeSource(Transfer):
     """Brings the target, with its new rig, to a rest pose like the source's; see `Transfer`.

@@ -27,17 +27,6 @@ if TYPE_CHECKING:
     from ..jobs.transfer_job import Carried
     from ..scene.character import Side
 
-__all__ = [
-    "HIERMATCH_PG_report",
-    "HIERMATCH_PG_retarget",
-    "copy_named",
-    "remember_transfer",
-    "reported_target",
-    "retarget_of",
-    "shown_report",
-    "shown_target",
-]
-
 _SESSION: Final = secrets.randbelow(1 << 30) + 1
 """A number of this session: in another one, Blender gives the same objects other numbers."""
 

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.rig import RigSettings
 
-__all__ = ["RigTransfer"]
-
 
 class RigTransfer(Transfer):
     """Gives the target an armature like the source's; see `Transfer`.

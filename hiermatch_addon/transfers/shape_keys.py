@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.shape_keys import ShapeKeySettings
 
-__all__ = ["ShapeKeyTransfer"]
-
 
 class ShapeKeyTransfer(Transfer):
     """Carries shape keys; see `Transfer`.

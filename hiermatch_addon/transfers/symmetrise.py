@@ -46,8 +46,6 @@ if TYPE_CHECKING:
     from ...engine import Steps
     from .options.symmetrise import SymmetriseSettings
 
-__all__ = ["SymmetriseJob"]
-
 
 class SymmetriseJob(SteppedJob):
     """Makes one mesh symmetric; a `Job`.

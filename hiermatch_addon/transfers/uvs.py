@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.uvs import UVSettings
 
-__all__ = ["UVTransfer"]
-
 _MOST_LAYERS = 8
 """How many UV maps Blender allows a mesh."""
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-__all__ = ["chosen_groups", "deforming_bones", "group_columns", "group_names", "locked_groups", "write_groups"]
-
 
 def chosen_groups(source: Side, choice: str) -> list[str]:
     """Return the names of the groups to carry, in their order.

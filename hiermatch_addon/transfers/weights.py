@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.weights import WeightSettings
 
-__all__ = ["WeightTransfer"]
-
 _SUFFIX = "Rejected"
 
 _TORN, _WHOLE = (0.7, 0.02, 0.02, 1.0), (1.0, 1.0, 1.0, 1.0)

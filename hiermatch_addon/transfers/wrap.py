@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from ..scene.character import Side
     from .options.wrap import WrapSettings
 
-__all__ = ["WrapTransfer", "is_wrap_key", "wrap_key_name"]
-
 _LEAST_HELD = 0.9
 """If less of the vertices lies on the other mesh, that is told."""
 

@@ -21,8 +21,6 @@ if TYPE_CHECKING:
 
     from .manifest import Pair
 
-__all__ = ["add_commands"]
-
 _DESCRIPTION = """\
 Work through the pairs of a manifest: a table (.csv) or .json with source, target, output, and any option of the
 subcommand as further columns; paths are relative to the manifest.  Each pair runs in a Blender of its own.  What is

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from .manifest import Pair
     from .workers import Ended
 
-__all__ = ["Ledger", "counts", "summary_rows"]
-
 _COLUMNS = (
     "row",
     "name",

@@ -25,8 +25,6 @@ from ..retarget import NOT_OF_THE_MATCH
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-__all__ = ["COMMANDS", "Pair", "read_manifest", "take_shard"]
-
 COMMANDS = {
     "match": ("match",),
     "retarget": ("retarget", "match"),

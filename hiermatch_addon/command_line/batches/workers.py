@@ -18,8 +18,6 @@ from ..command import COMMAND
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-__all__ = ["Ended", "Task", "run_tasks"]
-
 _LOOK = 0.1
 """Seconds between two looks at the children."""
 

@@ -14,8 +14,6 @@ import bpy
 
 from . import ja_JP, zh_HANS
 
-__all__ = ["CONTEXT", "LANGUAGES", "register_translations", "unregister_translations", "use_context"]
-
 LANGUAGES: Final = {"ja_JP": ja_JP.MESSAGES, "zh_HANS": zh_HANS.MESSAGES}
 """For each of Blender's names of a language the translation of each English text."""
 

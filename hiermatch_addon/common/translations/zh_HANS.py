@@ -6,8 +6,6 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["MESSAGES"]
-
 MESSAGES: Final[dict[str, str]] = {
     "Points": "点",
     "How many points were matched": "匹配了多少个点",

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
     from ...scene.character import Side
 
-__all__ = ["HIERMATCH_OT_fit_my_rig"]
-
 
 class HIERMATCH_OT_fit_my_rig(MyRigOptions, TransferOperator, bpy.types.Operator):
     """Fit an armature of one's own choice."""

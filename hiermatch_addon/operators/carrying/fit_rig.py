@@ -15,8 +15,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_fit_rig"]
-
 
 class HIERMATCH_OT_fit_rig(RigOptions, TransferOperator, bpy.types.Operator):
     """Give the target a rig."""

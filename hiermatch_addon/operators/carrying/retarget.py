@@ -14,8 +14,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_retarget"]
-
 
 class HIERMATCH_OT_retarget(RetargetOptions, TransferOperator, bpy.types.Operator):
     """Match two meshes and make the one work like the other."""

@@ -20,8 +20,6 @@ from ...transfers.symmetrise import SymmetriseJob
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_symmetrise"]
-
 
 class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator):
     """Make what a mesh carries symmetric."""

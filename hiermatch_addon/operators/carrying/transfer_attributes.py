@@ -14,8 +14,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_transfer_attributes"]
-
 
 class HIERMATCH_OT_transfer_attributes(AttributeOptions, TransferOperator, bpy.types.Operator):
     """Carry attributes over."""

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...transfers.motion.motion_job import MotionJob
 
-__all__ = ["TransferOperator"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 _MENU_WIDTH = 64

@@ -16,8 +16,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_transfer_paired_weights"]
-
 
 class HIERMATCH_OT_transfer_paired_weights(TransferOperator, bpy.types.Operator):
     """Carry weights to another rig."""

@@ -14,8 +14,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_transfer_shape_keys"]
-
 
 class HIERMATCH_OT_transfer_shape_keys(ShapeKeyOptions, TransferOperator, bpy.types.Operator):
     """Carry shape keys over."""

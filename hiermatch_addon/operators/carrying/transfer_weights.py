@@ -14,8 +14,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_transfer_weights"]
-
 
 class HIERMATCH_OT_transfer_weights(WeightOptions, TransferOperator, bpy.types.Operator):
     """Carry weights over."""

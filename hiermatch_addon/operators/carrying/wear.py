@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...transfers.motion.motion_job import MotionJob
 
-__all__ = ["HIERMATCH_OT_wear"]
-
 
 class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
     """Fit clothes to another body."""

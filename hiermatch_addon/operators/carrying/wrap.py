@@ -14,8 +14,6 @@ from .transfer_operator import TransferOperator
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["HIERMATCH_OT_wrap"]
-
 
 class HIERMATCH_OT_wrap(WrapOptions, TransferOperator, bpy.types.Operator):
     """Lay one mesh onto another."""

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 
     from ...scene.character import Side
 
-__all__ = ["HIERMATCH_OT_before_after"]
-
 
 class HIERMATCH_OT_before_after(bpy.types.Operator):
     """Show a target without its new rig, shape keys and clothes, and again with them."""

@@ -19,8 +19,6 @@ from .rig_operator import meant_armature
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_test_poses"]
-
 
 class HIERMATCH_OT_test_poses(bpy.types.Operator):
     """Bend every joint of a rig in turn, to see how the mesh follows."""

@@ -18,8 +18,6 @@ from ...transfers.retarget_properties import reported_target
 if TYPE_CHECKING:
     from ...scene.character import Side
 
-__all__ = ["meant_armature", "meant_target"]
-
 
 def meant_target(context: bpy.types.Context, name: str) -> Side:
     """Find what is meant: by name, else picked as the Target, else of the last retarget, else active.

@@ -20,8 +20,6 @@ from ..show import show_colors
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_show_fit"]
-
 
 class HIERMATCH_OT_show_fit(bpy.types.Operator):
     """Show in colors how fitted clothes lie on a body."""

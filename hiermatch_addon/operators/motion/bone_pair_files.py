@@ -13,8 +13,6 @@ from ...properties.bone_pairs import load_pairs, save_pairs
 from ..pair_operator import FileOperator
 from .edit_bone_pairs import PairEditor
 
-__all__ = ["HIERMATCH_OT_export_bone_pairs", "HIERMATCH_OT_import_bone_pairs"]
-
 
 class _PairFile(FileOperator, PairEditor):
     """An operator on a file of pairs of bones."""

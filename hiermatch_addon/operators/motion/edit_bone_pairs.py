@@ -15,8 +15,6 @@ from ...scene.motion.rigs import rig_of
 from ...transfers.retarget_properties import retarget_of
 from ..pair_operator import PairOperator, pick_sides
 
-__all__ = ["HIERMATCH_OT_add_bone_pair", "HIERMATCH_OT_clear_bone_pairs", "HIERMATCH_OT_remove_bone_pair", "PairEditor"]
-
 
 class PairEditor(PairOperator):
     """What operators on the table of two armatures have in common."""

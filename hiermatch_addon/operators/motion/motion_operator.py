@@ -11,8 +11,6 @@ from ..carrying.transfer_operator import TransferOperator
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["MotionOperator"]
-
 
 class MotionOperator(TransferOperator):
     """To be inherited from before `bpy.types.Operator`."""

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from ...jobs.transfer_job import TransferJob, TransferOptions
     from ...scene.character import Side
 
-__all__ = ["HIERMATCH_OT_pair_bones"]
-
 
 class HIERMATCH_OT_pair_bones(MotionOperator, bpy.types.Operator):
     """Pair bones."""

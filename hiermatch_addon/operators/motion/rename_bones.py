@@ -22,8 +22,6 @@ from ..reported_errors import reporting_errors
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_rename_bones"]
-
 _STANDARDS = [
     ("VRM", "VRM", "Names of the humanoid bones of VRM 1.0, such as leftUpperArm"),
     ("MIXAMO", "Mixamo", "Names of Mixamo, such as mixamorig:LeftArm"),

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from ...jobs.transfer_job import TransferOptions
     from ...scene.character import Side
 
-__all__ = ["HIERMATCH_OT_retarget_action", "HIERMATCH_OT_retarget_pose"]
-
 
 class HIERMATCH_OT_retarget_action(MotionOptions, MotionOperator, bpy.types.Operator):
     """Carry actions over."""

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ...scene.character import Side
 
-__all__ = ["HIERMATCH_OT_add_landmark"]
-
 
 class HIERMATCH_OT_add_landmark(LandmarkOperator, bpy.types.Operator):
     """Name two corresponding vertices."""

@@ -17,13 +17,6 @@ from .landmark_operator import LandmarkOperator
 if TYPE_CHECKING:
     from ...scene.character import Side
 
-__all__ = [
-    "HIERMATCH_OT_clear_landmarks",
-    "HIERMATCH_OT_remove_landmark",
-    "HIERMATCH_OT_select_landmark",
-    "HIERMATCH_OT_switch_landmark",
-]
-
 
 class _OneLandmark(LandmarkOperator):
     """What is done to one landmark."""

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...storage.halves import Half
 
-__all__ = ["HIERMATCH_OT_lock_pair", "HIERMATCH_OT_remove_pair", "HIERMATCH_OT_select_pair"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from .landmark_picking import Hit
 
-__all__ = ["Guide", "HIERMATCH_OT_guide_me"]
-
 _PLACES: Final = ("Nose", "Left Hand", "Right Hand", "Left Foot", "Right Foot", "Tail")
 """What is asked for, in turn; left and right are the character's own, and hands are the forefeet of an animal."""
 

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
 else:
     _Operator = object
 
-__all__ = ["LandmarkClicks", "is_key"]
-
 _MOVES: Final = ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE")
 """Events of which there are many, and that change nothing."""
 

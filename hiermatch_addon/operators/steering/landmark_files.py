@@ -22,8 +22,6 @@ from .landmark_operator import LandmarkOperator
 if TYPE_CHECKING:
     from ...scene.character import Side
 
-__all__ = ["HIERMATCH_OT_load_landmarks", "HIERMATCH_OT_save_landmarks"]
-
 
 class _LandmarkFile(FileOperator, LandmarkOperator):
     """An operator on a file of landmarks."""

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...storage.landmarks import Mark
 
-__all__ = ["LandmarkOperator", "pick_pair", "steerable_pair", "told_of_others"]
-
 
 def steerable_pair(context: bpy.types.Context, names: tuple[str, str] = ("", "")) -> tuple[Side, Side]:
     """Find the two sides that are meant: by name, else as picked in the panel, else as selected.

@@ -23,16 +23,6 @@ if TYPE_CHECKING:
 
     from ...scene.character import Side
 
-__all__ = [
-    "Hit",
-    "cast_ray",
-    "places_around",
-    "selected_empties",
-    "selected_pair",
-    "shown_positions",
-    "vertices_at_empties",
-]
-
 _OFF = 0.1
 """How far from where the surface was hit the nearest vertex may be, in diagonals of the mesh's bounding box."""
 

@@ -18,8 +18,6 @@ from .landmark_operator import pick_pair, steerable_pair
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
-__all__ = ["HIERMATCH_OT_mirror_landmarks"]
-
 
 class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
     """Carry landmarks to the other side."""

@@ -7,8 +7,6 @@ import bpy
 
 from .landmark_clicks import LandmarkClicks
 
-__all__ = ["HIERMATCH_OT_pick_landmarks"]
-
 
 class HIERMATCH_OT_pick_landmarks(LandmarkClicks, bpy.types.Operator):
     """Click on corresponding places of two meshes, one after the other."""

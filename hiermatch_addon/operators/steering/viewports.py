@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["Viewport", "is_in_viewport", "viewport_at"]
-
 _OFFSET: Final = 10
 """How far the ball of axes is from the corner of a viewport, in pixels; this and the next are Blender's own."""
 

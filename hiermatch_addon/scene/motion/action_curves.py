@@ -13,30 +13,6 @@ from ..armatures import armature_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-__all__ = [
-    "MADE_FOR",
-    "TRANSFORMS",
-    "CurveMaker",
-    "actions_of",
-    "assign_action",
-    "bone_curves",
-    "choose_slot",
-    "clips",
-    "every_curve",
-    "frame_range",
-    "moves",
-    "moves_bones",
-    "moves_object_only",
-    "object_curves",
-    "played_action",
-    "playing",
-    "renamed_paths",
-    "rotation_channel",
-    "scaled_bones",
-    "slot_curves",
-    "slot_for",
-]
-
 _BONE_PATH = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]')
 
 _BONE = re.compile(r'pose\.bones\["(?P<name>(?:[^"\\]|\\.)*)"\]\.(?P<channel>\w+)$')
@@ -51,7 +27,6 @@ _STILL = 1e-6
 
 _AS_LARGE = 0.01
 """By what part a bone may be larger or smaller and still count as large as it is: importers round more."""
-
 
 MADE_FOR = "hiermatch_made_for"
 """Custom property of the actions that are made here: the name of the armature object that they are for."""

@@ -13,8 +13,6 @@ from .action_curves import played_action, rotation_channel
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["key_automatically"]
-
 
 def key_automatically(
     scene: bpy.types.Scene, armature: bpy.types.Object, bones: Iterable[str], placed: Iterable[str]

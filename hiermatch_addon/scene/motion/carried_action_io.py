@@ -17,17 +17,6 @@ from .action_curves import MADE_FOR, every_curve, playing
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-__all__ = [
-    "carried_before",
-    "mark_carried",
-    "put_aside",
-    "still_as_made",
-    "to_be_replaced",
-    "users_beside",
-    "was_carried",
-    "was_edited",
-]
-
 _MODEL: Final = "hiermatch_carried"
 """Custom property of actions that were made from those of other rigs: the name of that action.
 

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
     from .own_scene import OwnScene
 
-__all__ = ["Controls", "Switch", "at_rest", "leaders_of", "posed_controls", "set_switches"]
-
 _STANDS = 1e-4
 """By how much a control may stand otherwise than it should, in radians and in units of the first bone's length."""
 

@@ -23,17 +23,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = [
-    "Candidates",
-    "candidates_of",
-    "carriers",
-    "chosen_controls",
-    "driven_bones",
-    "tried_controls",
-    "with_carrier",
-    "worth_trying",
-]
-
 _TURN = 0.4
 """By how much controls are turned to see what follows, in radians, about an axis askew to theirs."""
 

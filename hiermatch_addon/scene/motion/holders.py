@@ -12,8 +12,6 @@ from .action_curves import every_curve, moves, playing, slot_curves, slot_for
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["acts", "holds", "is_carried"]
-
 _LEAVING = ("FLOOR", "LIMIT_DISTANCE", "LIMIT_LOCATION", "LIMIT_ROTATION", "LIMIT_SCALE", "MAINTAIN_VOLUME")
 """Types of constraints that leave a bone to its own curves within limits, and take no place from anything else."""
 

@@ -32,20 +32,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = [
-    "BoneKeys",
-    "current_motion",
-    "evaluated_frames",
-    "grows",
-    "needs_evaluation",
-    "object_places",
-    "posed_at",
-    "set_pose",
-    "turned_above",
-    "with_object",
-    "write_action",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class BoneKeys:

@@ -13,8 +13,6 @@ if TYPE_CHECKING:
 
     import bpy
 
-__all__ = ["add_tracks", "copy_strips", "strip_actions"]
-
 _TRACK = ("mute", "lock")
 _STRIP = (
     "action_frame_start",

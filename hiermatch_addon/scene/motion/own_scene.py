@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from mathutils import Matrix
     from numpy.typing import NDArray
 
-__all__ = ["OwnScene", "own_scene"]
-
 
 class OwnScene:
     """A scene with the copy of an armature, and how that stands in it.

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["REST_NUMBERS", "change_of_rest", "rest_points"]
-
 REST_NUMBERS = 9
 """How many numbers are remembered of a bone: head, tail, and a point beside the head, which shows turns about it."""
 

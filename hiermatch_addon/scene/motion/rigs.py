@@ -18,18 +18,6 @@ if TYPE_CHECKING:
     from ....engine import LocalTransforms, Motion
     from ..character import Side
 
-__all__ = [
-    "check_armature",
-    "check_bones",
-    "in_own_spaces",
-    "local_poses",
-    "object_rotation",
-    "own_skeleton",
-    "rest_matrices",
-    "rig_of",
-    "two_rigs",
-]
-
 
 def rig_of(side: Side) -> bpy.types.Object:
     """Return the armature object that is meant by itself or by what it moves.

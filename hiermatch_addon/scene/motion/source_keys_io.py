@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["OBJECT", "ActionKeys", "CurveKeys", "Cycle", "Way", "common_ways", "key_frames", "read_keys"]
-
 OBJECT = ""
 """What stands among names of bones for the object itself, which carries them all."""
 

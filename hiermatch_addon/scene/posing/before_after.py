@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ..character import Side
 
-__all__ = ["is_before", "show_after", "show_before"]
-
 _STATE: Final = "hiermatch_before"
 """Custom property of the object: what is hidden of it, as a JSON text."""
 

@@ -19,8 +19,6 @@ from .pose_state import bring_back, is_aside, put_aside
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["begin_exercise", "bending_bones", "end_exercise", "is_exercising"]
-
 _WHY: Final = "test poses"
 
 _STATE: Final = "hiermatch_test_poses"

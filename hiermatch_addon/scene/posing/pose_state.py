@@ -12,8 +12,6 @@ from ..motion.action_curves import TRANSFORMS, played_action
 if TYPE_CHECKING:
     import bpy
 
-__all__ = ["bring_back", "is_aside", "own_action", "put_aside"]
-
 _STATE: Final = "hiermatch_pose_aside"
 """Custom property of the armature: what was put aside, as a JSON text."""
 

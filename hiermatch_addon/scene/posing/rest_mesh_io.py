@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ....engine import RestPose
     from ..character import Side
 
-__all__ = ["bring_to_rest", "plays_actions", "why_not_to_rest"]
-
 
 def plays_actions(armature: bpy.types.Object) -> bool:
     """Tell whether an armature has an action of its own, or strips of some."""

@@ -25,23 +25,6 @@ if TYPE_CHECKING:
 
     from ..character import Side
 
-__all__ = [
-    "BODY",
-    "COVERED",
-    "ITEM",
-    "adopt",
-    "as_fitted",
-    "fitted_name",
-    "fitted_to",
-    "former_names",
-    "made_copy",
-    "mark_names",
-    "original_of",
-    "put_aside",
-    "unmark",
-    "was_edited",
-]
-
 ITEM, BODY = "hiermatch_item", FITTED_TO
 """Custom properties of a fitted copy: the names of the original, and of the body that it was fitted to."""
 

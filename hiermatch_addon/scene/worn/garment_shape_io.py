@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     import bpy
     from numpy.typing import NDArray
 
-__all__ = ["mirror_axes", "write_shape"]
-
 _ON_PLANE = 1e-4
 """How near a vertex is to the plane of a Mirror modifier, in the object's size, to be on it."""
 

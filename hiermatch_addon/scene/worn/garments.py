@@ -44,17 +44,6 @@ if TYPE_CHECKING:
 
     from ..character import Side
 
-__all__ = [
-    "bound_items",
-    "check_item",
-    "dressed_at_rest",
-    "fitted_copy",
-    "left_behind",
-    "meshes_of",
-    "selected_items",
-    "undressed",
-]
-
 _SHAPES = frozenset({"MESH", "CURVE", "CURVES", "SURFACE", "FONT", "META"})
 """Types of objects that have a shape."""
 

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
 
     from ..character import Side
 
-__all__ = ["node_inputs", "point_to", "used_beside"]
-
 _SIZES = {"SOLIDIFY": ("thickness",), "BEVEL": ("width",), "DISPLACE": ("strength",)}
 """For each type of modifier the members that are lengths."""
 

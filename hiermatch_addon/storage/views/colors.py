@@ -14,8 +14,6 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["bandwidths", "confidence_colors", "distortion_colors", "match_colors", "opaque", "spread", "to_linear"]
-
 NEUTRAL = 0.5
 """Grey (sRGB) of the places that no matched point can reach."""
 

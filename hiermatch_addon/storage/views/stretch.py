@@ -12,8 +12,6 @@ if TYPE_CHECKING:
 
     from ....engine import SurfaceMap, TriangleMesh
 
-__all__ = ["DOUBLED", "vertex_stretch"]
-
 DOUBLED = float(np.log(2))
 """The value where all lengths are doubled or halved."""
 

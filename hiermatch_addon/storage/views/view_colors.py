@@ -12,8 +12,6 @@ from .colors import NEUTRAL
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["check_size", "checked", "overlap_colors", "region_colors"]
-
 _SHARED = np.array([0.25, 0.55, 0.9])
 """Blue (sRGB) of what has a partner."""
 

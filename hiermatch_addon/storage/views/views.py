@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ..halves import Half
     from ..vertex_maps import MapPair
 
-__all__ = ["VIEW_ITEMS", "attribute_of", "prepare_view", "region_groups", "show_attribute"]
-
 VIEW_ITEMS: Final = (
     ("NONE", "Nothing", "Show the meshes as before"),
     ("MATCH", "Match Colors", "Show corresponding places in the same color"),

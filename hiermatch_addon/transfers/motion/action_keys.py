@@ -22,18 +22,6 @@ if TYPE_CHECKING:
     from ....engine import BonePairing, Skeleton, TransferredMotion
     from ...scene.motion.source_keys_io import ActionKeys, CurveKeys, Cycle
 
-__all__ = [
-    "BoneChannels",
-    "Movers",
-    "baked_frames",
-    "baked_keys",
-    "bone_channels",
-    "keys_suffice",
-    "movers_of",
-    "sparse_frames",
-    "sparse_keys",
-]
-
 SIDE_STEP = 0.05
 """Frames before and after a key at which its slopes are measured."""
 

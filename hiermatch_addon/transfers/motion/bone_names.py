@@ -21,8 +21,6 @@ from .name_tables import NAME_TABLES
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["names_by_source", "names_by_table", "rename_bones"]
-
 
 def names_by_table(armature: bpy.types.Object, known: str, wanted: str) -> dict[str, str]:
     """Find the names that bones of a person's rig have in a standard.

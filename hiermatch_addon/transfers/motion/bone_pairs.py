@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from ...jobs.transfer_job import TransferOptions
     from ...scene.character import Side
 
-__all__ = ["BonePairTransfer", "pairing_job"]
-
 _EXCHANGED = 0.5
 """Part of the pairs with sides in their names from which on, if they contradict, the match may be mirrored."""
 

@@ -68,8 +68,6 @@ if TYPE_CHECKING:
     from .bone_pairs import BonePairTransfer
     from .steered_rig import SteeredRig
 
-__all__ = ["MotionJob"]
-
 _PAIRED = 0.6
 """Where on the progress bar pairing ends, if it is needed."""
 

@@ -6,8 +6,6 @@ from __future__ import annotations
 from itertools import product
 from typing import Final
 
-__all__ = ["NAME_TABLES"]
-
 _FINGERS: Final = ("thumb", "index", "middle", "ring", "little")
 
 _TRUNK: Final = ("hips", "spine", "chest", "upper_chest", "neck", "head")

@@ -28,8 +28,6 @@ if TYPE_CHECKING:
     from ...scene.armatures import SourceRig
     from ...scene.character import Side
 
-__all__ = ["PairedWeightTransfer"]
-
 
 @dataclass(frozen=True, eq=False)
 class _Task:

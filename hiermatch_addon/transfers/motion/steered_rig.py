@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from ...scene.motion.control_pose_io import Controls
     from ...scene.motion.control_rigs import Candidates
 
-__all__ = ["SteeredRig", "found_again", "is_steered", "steered_steps"]
-
 _AT_ONCE = 8
 """Groups of controls tried, or poses looked at, before Blender gets on with its own work: a fifth of a second for
 Rigify's human.  A third of that is the copy of the rig that each lot needs."""

@@ -10,8 +10,6 @@ import bpy
 
 from .plain_settings import names_in, settings_of
 
-__all__ = ["AttributeOptions", "AttributeSettings", "attribute_settings"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

@@ -17,8 +17,6 @@ from ...scene.motion.action_curves import actions_of, moves_bones, moves_object_
 from ...scene.motion.nla_strips import strip_actions
 from ...scene.posing.rest_mesh_io import plays_actions
 
-__all__ = ["MotionOptions", "MotionPlan", "motion_plan"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

@@ -11,8 +11,6 @@ import bpy
 from ...common.access import view_layer_of
 from .plain_settings import settings_of
 
-__all__ = ["MyRigOptions", "MyRigSettings", "my_rig_settings"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

@@ -11,8 +11,6 @@ if TYPE_CHECKING:
 
     Settings = TypeVar("Settings", bound=DataclassInstance)
 
-__all__ = ["names_in", "settings_of"]
-
 
 def settings_of(kind: type[Settings], options: object, start: str, **others: object) -> Settings:
     """Make settings of options.

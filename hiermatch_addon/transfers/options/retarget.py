@@ -23,8 +23,6 @@ from .weights import WeightOptions, weight_settings
 if TYPE_CHECKING:
     from ...jobs.transfer import Transfer
 
-__all__ = ["KINDS", "RetargetOptions", "chosen_transfers", "option_names"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 KINDS: Final = {

@@ -13,8 +13,6 @@ from .plain_settings import names_in, settings_of
 if TYPE_CHECKING:
     from ....engine import Scaling
 
-__all__ = ["ShapeKeyOptions", "ShapeKeySettings", "shape_key_settings"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

@@ -11,8 +11,6 @@ import bpy
 
 from .plain_settings import settings_of
 
-__all__ = ["FITS", "HIERMATCH_PG_worn", "WearOptions", "WearSettings", "wear_settings"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 FITS = [

@@ -10,8 +10,6 @@ import bpy
 
 from .plain_settings import settings_of
 
-__all__ = ["WeightOptions", "WeightSettings", "weight_settings"]
-
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 

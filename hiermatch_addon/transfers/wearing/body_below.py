@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
     from ...scene.character import Side
 
-__all__ = ["cover_body", "covered_vertices", "worn_already"]
-
 _REACH = 0.03
 """How far above the skin, in the root of the body's area, clothes are looked for."""
 

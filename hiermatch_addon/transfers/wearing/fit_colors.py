@@ -15,8 +15,6 @@ if TYPE_CHECKING:
 
     from ....engine import FittedItem
 
-__all__ = ["FIT_ITEMS", "FIT_NAMES", "carriers_of_fit", "drop_colors", "write_colors"]
-
 FIT_ITEMS: Final = (
     ("DISTANCE", "Distance to Skin", "Show how far clothes are from the skin, from white to dark red; blue is inside"),
     ("PUSHED", "Pushed", "Show how far clothes were pushed out of the skin, from white (not at all) to dark red"),

@@ -10,8 +10,6 @@ from ...common.phrases import counted
 if TYPE_CHECKING:
     from ....engine import FittedItem
 
-__all__ = ["done", "doubt"]
-
 _MOST_THROUGH = 0.003
 """If more of an item is below the skin still, that is told."""
 

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from ....engine import TriangleMesh
     from ...scene.character import Side
 
-__all__ = ["BodyKeys", "apart_from", "lacking", "read_body_keys", "write_followed"]
-
 
 @dataclass(frozen=True, eq=False)
 class BodyKeys:

@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from .item_weights import ItemWeights
 
-__all__ = ["ItemBones", "read_item_bones"]
-
 
 @dataclass(frozen=True, eq=False)
 class ItemBones:

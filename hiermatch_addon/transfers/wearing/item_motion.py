@@ -39,8 +39,6 @@ if TYPE_CHECKING:
     from .item_bones import ItemBones
     from .item_reading import ReadItem
 
-__all__ = ["ItemMotion"]
-
 
 class ItemMotion:
     """What moves fitted items.

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from ...scene.armatures import SourceRig
     from ...scene.character import Side
 
-__all__ = ["ReadItem", "check_place", "painted_groups", "read_item", "still_there"]
-
 painted_groups = ("Rigid", "Tight", "Loose", "Leave")
 """Names of vertex groups of an item that steer how it is fitted."""
 

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
     from ..options.wear import WearSettings
 
-__all__ = ["ItemWeights", "chosen_weights", "in_columns", "replaced", "within_limit"]
-
 _ALIKE = 0.5
 """Part of an item's weights that has to be of bones that the other rig has as well, for them to be kept."""
 

@@ -42,8 +42,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from .item_weights import ItemWeights
 
-__all__ = ["check_key", "write_copy", "write_key"]
-
 _KEY = "Fit to "
 """What the name of a shape key begins with that fits the item itself to a body."""
 

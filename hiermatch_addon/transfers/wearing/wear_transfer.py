@@ -50,8 +50,6 @@ if TYPE_CHECKING:
     from .followed_keys import BodyKeys
     from .item_reading import ReadItem
 
-__all__ = ["WearTransfer"]
-
 
 class WearTransfer(Transfer):
     """Fits clothes of the source to the target; see `Transfer`.
