@@ -124,7 +124,7 @@ def overlap_match_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[OverlapMat
     shared = _Shared(main, (there, back), known, likely)
     forward = yield from within(_whole_map_steps((x, y), shared, 0), 0.92, 0.95)
     backward = yield from within(_whole_map_steps((y, x), shared, 1), 0.95, 0.98)
-    quality = _quality(shared, overlap.margin)
+    quality = _quality(shared, overlap)
     task.clock.lap("lift")
     showing = _result_steps((x, y), overlap, task, (forward, backward), quality)
     result = yield from within(showing, 0.98, 1.0)
@@ -217,16 +217,16 @@ def _whole_map_steps(pair: tuple[Shape, Shape], shared: _Shared, here: int) -> S
     return SurfaceMap.from_barycentric(y.original, triangles, followed.points.barycentric, confidence, partners)
 
 
-def _quality(shared: _Shared, margin: float) -> MatchQuality:
+def _quality(shared: _Shared, overlap: Overlap) -> MatchQuality:
     """Measure what is shared."""
-    (source, target), known = shared.meshes, shared.known[0]
+    (source, target), known, lengths = shared.meshes, shared.known[0], overlap.search.lengths
     areas = source.vertex_areas * known
     total = max(float(areas.sum()), TINY)
     found = SurfaceMap.from_points(target, shared.maps[0])
     shown = source.triangle_areas * known[source.triangles].all(axis=1)
     orientation = float(shown @ found.face_orientations(source, target)) / max(float(shown.sum()), TINY)
     # In one unit of length: parts have no sizes of their own.
-    stretch = found.edge_stretch(source, target) * np.sqrt(target.area / source.area)
+    stretch = found.edge_stretch(source, target) * np.sqrt(target.area / source.area) * lengths[0] / lengths[1]
     usable = known[source.edges].all(axis=1) & np.isfinite(stretch) & (stretch > 0)
     weights = np.square(source.edge_lengths[usable])
     distortion = float(weights @ np.abs(np.log(stretch[usable]))) / max(float(weights.sum()), TINY)
@@ -236,7 +236,7 @@ def _quality(shared: _Shared, margin: float) -> MatchQuality:
     sentence = overlap_sentence(shared.shares, credible=credible)
     # What is not likely right has no partner as likely as not.
     shares = [share * (1.0 if credible else shared.likely) for share in shared.shares]
-    numbers = orientation, distortion, shares[1], disagreement, margin, confidence
+    numbers = orientation, distortion, shares[1], disagreement, overlap.margin, confidence
     return MatchQuality(*numbers, sentence, source_coverage=shares[0])
 
 
@@ -255,9 +255,9 @@ def _result_steps(
     images = SurfacePoints.from_barycentric(y.original, forward.triangles[own], forward.barycentric[own])
     on_main = (y.surface.cleaned.vertex_parts[images.nearest_vertices] == 0).all()
     ends = y.surface.mesh_vertices(images.nearest_vertices) if on_main else overlap.images[0][vertices]
-    unit = max(x.scale, y.scale)
     distances = yield from shared_steps(_distances_steps, None, ((x.solver, vertices), (y.solver, ends)))
-    differences = (distances[0] - distances[1]) / unit
+    here, there = (rows / unit for rows, unit in zip(distances, overlap.search.lengths, strict=True))
+    differences = here - there
     squares = np.where(np.isfinite(differences), np.square(differences), 0.0)
     distortion = settings.quadratic_weight * float(squares.sum())
     first = min(settings.coarse_points, len(vertices))

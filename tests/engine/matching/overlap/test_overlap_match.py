@@ -75,6 +75,14 @@ def test_the_shares_are_said(result, front, back):
     assert quality.confidence > CLEAR
 
 
+def test_the_unit_of_either_does_not_matter(result, front, back):
+    millimetres = TriangleMesh(1000 * back[0].vertices, back[0].triangles)
+    other = match(front[0], millimetres, QUICK)
+    assert other.quality.distortion < 2 * result.quality.distortion
+    assert other.point_distortion.mean() < 2 * result.point_distortion.mean()
+    assert other.distortion < 5 * result.distortion
+
+
 def test_points_lie_on_what_is_shared(result):
     vertices = result.source_points.nearest_vertices
     assert len(np.unique(vertices)) == 12
