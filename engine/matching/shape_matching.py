@@ -224,7 +224,7 @@ def _dense_steps(
     for number, other in enumerate(registered.alternatives, start=1):
         places = other.triangles[fine_x.samples.vertices[:count]], other.barycentric[fine_x.samples.vertices[:count]]
         turned = placed(fine_y.surface.on_original(SurfacePoints.from_barycentric(fine_y.mesh, *places)))
-        yield from pair.target_metric.prepare_nearest_steps(turned)
+        yield from within(pair.target_metric.prepare_nearest_steps(turned), 1.0, 1.0)
         others.append((turned_name(number), moved(direct, turned)))
     clock.lap("agreement")
     return direct, others, dense

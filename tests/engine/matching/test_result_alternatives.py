@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from engine import MatchSettings, TriangleMesh, densify, match
+from engine import MatchSettings, TriangleMesh, densify, match, match_steps
 from tests.bodies import mirrored_body, starfish, table, two_headed
 from tests.shapes import creature, permuted, rotation
 
@@ -72,6 +72,12 @@ def test_names_and_the_sentence_tell_of_them(symmetric):
     assert result.quality.sentence.startswith(f"{len(turned) + 1} maps are about as likely")
     if result.mirrored is not None:
         assert result.alternatives[0] is result.mirrored
+
+
+def test_progress_rises_where_there_are_several(symmetric):
+    source, target, *_ = symmetric
+    fractions = [progress.fraction for progress in match_steps(source, target, SETTINGS)]
+    assert fractions == sorted(fractions)
 
 
 def test_the_dense_map_of_an_answer_is_that_answer(symmetric):
