@@ -127,7 +127,7 @@ def match_steps(
     for surface, name in ((source, "source"), (target, "target")):
         check_surface(surface, name)
     settings, pairs = MatchSettings.checked(settings), vertex_pairs(landmarks)
-    task = MatchTask(settings, pairs if len(pairs) else None, assumed=assumed)
+    task = MatchTask(settings, pairs if len(pairs) else None, assumed=assumed and len(pairs) > 0)
     masks = left_out_of((source, target), excluded)
     call_helpers()
     x, y = yield from within(_shapes_steps((source, target), masks, known), 0.0, 0.06)

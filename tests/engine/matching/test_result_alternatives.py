@@ -115,6 +115,13 @@ def test_the_order_of_vertices_does_not_matter():
     assert len(offered[0]) >= 4
 
 
+def test_that_no_landmarks_correspond_may_be_assumed():
+    source, target, result = matched("table")
+    again = match(source, target, SETTINGS, landmarks=[], assumed=True)
+    assert [answer.name for answer in again.alternatives] == [answer.name for answer in result.alternatives]
+    assert again.quality.margin == result.quality.margin
+
+
 @pytest.mark.parametrize("symmetric_to_itself", [False, True])
 def test_bodies_without_such_symmetry_have_only_a_mirrored_answer(symmetric_to_itself):
     make = mirrored_body if symmetric_to_itself else creature
