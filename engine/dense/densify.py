@@ -94,7 +94,8 @@ def densify_steps(
     Raises
     ------
     MatchError
-        If a point does not lie on the main part of its mesh, or there are fewer than three pairs of them.
+        If a point does not lie on the main part of its mesh, there are fewer than three pairs of them, or a map is of
+        another mesh.
     MeshError
         If a surface is none.
     """

@@ -302,11 +302,21 @@ class SurfaceMap:
         MatchError
             If they are not.
         """
+        self.check_domain(domain)
+        self._check_image(image)
+
+    def check_domain(self, domain: TriangleMesh) -> None:
+        """Raise an error if this is not the mesh that the map leads from, by its number of vertices.
+
+        Raises
+        ------
+        MatchError
+            If it is not.
+        """
         if domain.vertex_count != len(self):
             raise MatchError(
                 f"The map is one of {len(self)} vertices, but the mesh it should lead from has {domain.vertex_count}."
             )
-        self._check_image(image)
 
     def _check_image(self, image: TriangleMesh) -> None:
         if image.vertex_count != self.image_vertex_count:

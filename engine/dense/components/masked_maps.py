@@ -32,9 +32,15 @@ def piece_of(mesh: TriangleMesh, found: SurfaceMap | None, needed: Ints) -> Bool
     -------
     (n,) array of bool or None
         None if nearly all have one, if nothing is known, or if needed ones have none or would be cut off from most.
+
+    Raises
+    ------
+    MatchError
+        If it is not the map of this mesh.
     """
     if found is None:
         return None
+    found.check_domain(mesh)
     covered = found.has_partner & (found.confidence > 0)
     existing = needed[(needed >= 0) & (needed < len(covered))]
     if share_of(mesh, covered) > 1 - _LEAST_LEFT or not _hold_on(mesh, covered, existing):

@@ -380,6 +380,10 @@ def test_points_that_cannot_be_extended_are_refused_in_words(symmetric, symmetri
         densify(source, TriangleMesh(*icosphere(2)), here, there)
     with pytest.raises(MeshError, match="source is of the type ndarray"):
         densify(source.vertices, target, here, there)
+    other = SurfaceMap.identity(TriangleMesh(*icosphere(2)))
+    for maps in ((other, None), (None, other)):
+        with pytest.raises(MatchError, match="map is one of 42 vertices"):
+            densify(source, target, here, there, maps=maps)
 
 
 def test_points_beside_the_main_part_are_refused_in_words(symmetric, symmetric_result):
