@@ -141,9 +141,11 @@ def find_symmetry_steps(
     settings = MatchSettings.checked(settings)
     shape = yield from within(shape_steps(surface), 0.0, 0.0)
     check_vertex_count(shape, settings.points)
-    yield from within(shape.sample_steps(max(settings.samples, 2 * settings.points)), 0.0, 0.5)
+    samples = max(settings.samples, 2 * settings.points)
+    yield from within(shape.sample_steps(samples), 0.0, 0.5)
     if Pair.needs_spectrum(settings):
         yield from within(shape.spectrum_steps(settings.eigenpairs), 0.5, 0.55)
+    shape = shape.limited(samples)
     pair = Pair(shape, shape, settings)
     coarse = yield from within(_coarse_steps(pair), 0.55, 0.7, "Matching the surface to itself")
     candidates = yield from within(_candidate_steps(pair, coarse), 0.7, 0.9, "Comparing symmetries")

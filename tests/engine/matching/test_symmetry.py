@@ -119,6 +119,14 @@ def test_alternatives_are_other_maps(posed_body, result):
         assert (moved > 0).mean() > 0.5
 
 
+def test_what_a_shape_was_used_for_before_does_not_matter(posed_body, result):
+    shape = Shape(posed_body[0])
+    run(shape.sample_steps(QUICK.samples + 100))
+    again = find_symmetry(shape, QUICK)
+    assert again.orientation == result.orientation
+    np.testing.assert_array_equal(again.target_points.positions, result.target_points.positions)
+
+
 def test_turns_have_no_axis():
     square = TriangleMesh(*plane(25))
     result = find_symmetry(square, QUICK)
