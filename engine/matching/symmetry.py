@@ -291,8 +291,9 @@ def _zero_crossings(mesh: TriangleMesh, values: Floats, *, reflection: bool) -> 
     """Points on edges at which a function given at the vertices, NaN where unknown, changes its sign."""
     corners = mesh.triangles if reflection else mesh.triangles[:0]
     first, second = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    crossing = (values[first] >= 0) & (values[second] < 0)  # in one direction: each inner edge once
-    flat = np.flatnonzero(crossing)
+    crossing = np.flatnonzero((values[first] >= 0) & (values[second] < 0) | (values[first] < 0) & (values[second] >= 0))
+    ends = np.sort([first[crossing], second[crossing]], axis=0)
+    flat = crossing[np.sort(np.unique(ends, axis=1, return_index=True)[1])]  # each edge in its first triangle
     triangles, corner = np.divmod(flat, 3)
     a, b = values[first[flat]], values[second[flat]]
     weights = np.zeros((len(flat), 3))

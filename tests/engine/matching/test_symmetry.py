@@ -127,6 +127,22 @@ def test_what_a_shape_was_used_for_before_does_not_matter(posed_body, result):
     np.testing.assert_array_equal(again.target_points.positions, result.target_points.positions)
 
 
+def test_the_axis_crosses_borders_and_edges_between_faces_that_are_turned_over():
+    vertices, triangles = plane(13)
+    turned = triangles.copy()
+    turned[::3] = turned[::3, ::-1]
+    axes = []
+    for faces in (triangles, turned):
+        mesh = TriangleMesh(vertices, faces)
+        found = find_symmetry(mesh, MatchSettings(points=16, samples=96, hypotheses=2))
+        ahead = found.sides[mesh.edges] >= 0
+        assert len(found.axis_points) == (ahead[:, 0] != ahead[:, 1]).sum()
+        axes.append(found.axis_points.positions[:, :2])
+    on_border = ((axes[0] < 1e-9) | (axes[0] > 1 - 1e-9)).any(axis=1)
+    assert on_border.sum() == 2
+    assert len(np.unique(axes[1].round(9), axis=0)) == len(np.unique(axes[0].round(9), axis=0))
+
+
 def test_turns_have_no_axis():
     square = TriangleMesh(*plane(25))
     result = find_symmetry(square, QUICK)
