@@ -9,6 +9,7 @@ from operator import attrgetter
 
 import numpy as np
 
+from ..geometry.procrustes import mirrored_across
 from ..mesh.closest_points import FoundPoints
 from ..registration.deformable import DeformableSurface
 from ..registration.positional_constraints import Ties
@@ -185,7 +186,8 @@ def registered_pair_steps(
     if as_they_are:
         plausible += [unrefined_hypothesis(hypotheses[0].domains, start) for start in starts]
     untried = [h for h in hypotheses if h.orientation > 0 and not any(h is p for p in plausible)]
-    follow = Follower(x, y, source, target, ties, ties_back)
+    upright = yield from within(_upright_steps(x, target, plausible[-1 if as_they_are else 0]), 0.42, 0.42)
+    follow = Follower(x, y, source, target, ties, ties_back, upright=upright)
     candidates = yield from within(follow.all_steps(plausible), 0.42, 0.6)
     candidates.sort(key=lambda candidate: candidate.score)
     contest, candidates = Contest(follow, landmarks, least).credited(candidates)
@@ -212,6 +214,15 @@ def registered_pair_steps(
     if landmarks is not None and landmarks.assumed:
         landmarks, in_place = None, _LAID * in_place
     return RegisteredPair(x, y, source, target, *registered, margin, landmarks, mirrored, trips, alternatives, in_place)
+
+
+def _upright_steps(x: Shape, target: DeformableSurface, hypothesis: MapHypothesis) -> Steps[Floats]:
+    """Turn the reflection of a source, (3, 3), to be one in the plane in which a map mirrors it, however it stands."""
+    if not x.surface.is_reflected:
+        return np.eye(3)
+    images = (yield from hypothesis.images_steps()).on_y
+    axis = mirrored_across(x.surface.as_given(x.mesh.vertices), target.vertices[images], x.mesh.vertex_areas)
+    return x.surface.as_given(np.eye(3) - 2 * np.outer(axis, axis))
 
 
 def _preview(hypothesis: MapHypothesis, registration: Registration | None = None) -> Preview:

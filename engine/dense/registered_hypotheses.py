@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property, partial
 from typing import Any, ClassVar
 
@@ -152,6 +152,8 @@ class Follower:
         twice, and so on.
     standing : float
         How probably, at most, a map of these surfaces that is known already is right by what it leaves in place.
+    upright : (3, 3) array of float
+        How the source is turned before it is seen whether it is left in place: as it is, if it is not a reflection.
     """
 
     x: Shape
@@ -162,6 +164,7 @@ class Follower:
     ties_back: Ties | None = None
     disagree: tuple[float, ...] = (0.0055, 0.008, 0.012)
     standing: float = 0.0
+    upright: Floats = field(default_factory=lambda: np.eye(3))
     is_sent_once: ClassVar[bool] = True
 
     @cached_property
@@ -377,14 +380,19 @@ class Follower:
         """
         if not self.are_closed:
             return 0.0
-        return probability_in_place(agreement_in_place(self.source.mesh.vertices, positions, self.source.mass))
+        return probability_in_place(self._agreement(positions))
 
     def credit(self, positions: Floats) -> float:
         """By how much a score is smaller because of what is in place, be it after a half turn, see `place_credit`."""
         if not self.are_closed:
             return 0.0
-        agreement = agreement_in_place(self.source.mesh.vertices, positions, self.source.mass, half_turn=True)
-        return place_credit(max(self.in_place(positions), probability_turned(agreement, self.standing)))
+        turned = probability_turned(self._agreement(positions, half_turn=True), self.standing)
+        return place_credit(max(self.in_place(positions), turned))
+
+    def _agreement(self, positions: Floats, *, half_turn: bool = False) -> float:
+        """Say how well the source is left in place, see `agreement_in_place`."""
+        standing = self.source.mesh.vertices @ self.upright.T
+        return agreement_in_place(standing, positions, self.source.mass, half_turn=half_turn)
 
     def start(self, images: PointMaps) -> Floats:
         """Place the source where a map between all vertices puts it, smoothly."""

@@ -65,14 +65,29 @@ def agreement_in_place(points: Floats, images: Floats, weights: Floats, *, half_
         The mean correlation of the coordinates once either cloud has no correlation and unit variances: 1 if the map
         stretches along any axes, wherever to, -1/3 if it is a half turn.  It does not change if both are turned alike.
     """
-    shares = (weights / weights.sum())[:, None]
-    here, there = points - (shares * points).sum(axis=0), images - (shares * images).sum(axis=0)
-    crossed = (
-        _unit_root(here.T @ (shares * here)) @ (here.T @ (shares * there)) @ _unit_root(there.T @ (shares * there))
-    )
+    crossed = _correlations(points, images, weights)
     if half_turn:  # about an axis a it leaves twice a.T C a less the trace
         return float(2 * np.linalg.eigvalsh((crossed + crossed.T) / 2)[-1] - np.trace(crossed)) / 3
     return float(np.trace(crossed) / 3)
+
+
+def mirrored_across(points: Floats, images: Floats, weights: Floats) -> Floats:
+    """Find the direction, a unit vector (3,), in which images most nearly lie as the points do in a mirror.
+
+    Parameters
+    ----------
+    points, images, weights
+        As in `agreement_in_place`, which is the largest if the points are reflected in the plane across that direction.
+    """
+    crossed = _correlations(points, images, weights)
+    return np.linalg.eigh((crossed + crossed.T) / 2)[1][:, 0]
+
+
+def _correlations(points: Floats, images: Floats, weights: Floats) -> Floats:
+    """Correlate coordinates of points and of images, (3, 3), once either have no correlation and unit variances."""
+    shares = (weights / weights.sum())[:, None]
+    here, there = points - (shares * points).sum(axis=0), images - (shares * images).sum(axis=0)
+    return _unit_root(here.T @ (shares * here)) @ (here.T @ (shares * there)) @ _unit_root(there.T @ (shares * there))
 
 
 def _unit_root(covariance: Floats) -> Floats:

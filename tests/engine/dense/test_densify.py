@@ -80,6 +80,12 @@ def symmetric_result(symmetric):
     return match(*symmetric[:2], QUICK)
 
 
+@pytest.fixture(scope="module")
+def mirrored_map(symmetric, symmetric_result):
+    mirrored = symmetric_result.mirrored
+    return densify(*symmetric[:2], mirrored.source_points, mirrored.target_points)
+
+
 def test_every_vertex_gets_its_point_between_the_vertices(result, bodies):
     source, target, rest_x, rest_y = bodies
     for found, domain, image, own, other in (
@@ -301,10 +307,9 @@ def test_a_match_can_be_dropped_at_any_time(until):
         next(steps)
 
 
-def test_a_mirrored_correspondence_gives_the_mirrored_map(symmetric, symmetric_result):
+def test_a_mirrored_correspondence_gives_the_mirrored_map(symmetric, mirrored_map):
     source, target, rest_x, rest_y = symmetric
-    mirrored = symmetric_result.mirrored
-    dense = densify(source, target, mirrored.source_points, mirrored.target_points)
+    dense = mirrored_map
     flip = np.array([1, -1, 1])
     for found, domain, image, own, other in (
         (dense.source_to_target, source, target, rest_x, rest_y),
@@ -316,6 +321,21 @@ def test_a_mirrored_correspondence_gives_the_mirrored_map(symmetric, symmetric_r
         assert errors(found, own * flip, other, domain).max() < 0.08
         assert errors(found, own, other, domain).mean() > 0.1
     assert dense.quality.sentence == "The shapes correspond closely."
+
+
+def test_a_mirrored_map_leaves_a_body_in_place_whichever_way_it_looks(symmetric, symmetric_result, mirrored_map):
+    assert mirrored_map.quality.in_place > 0.9  # which is mirrored in y
+    turn = rotation([0, 0, 1], np.pi / 2)
+    source, target = (TriangleMesh(mesh.vertices @ turn.T, mesh.triangles) for mesh in symmetric[:2])
+    mirrored = symmetric_result.mirrored
+    points = [
+        SurfacePoints.from_barycentric(mesh, own.triangles, own.barycentric)
+        for mesh, own in ((source, mirrored.source_points), (target, mirrored.target_points))
+    ]
+    turned = densify(source, target, *points)
+    assert turned.quality.in_place == pytest.approx(mirrored_map.quality.in_place, abs=1e-3)
+    apart = turned.source_to_target.positions @ turn - mirrored_map.source_to_target.positions
+    assert np.linalg.norm(apart, axis=1).mean() < 1e-3 * np.sqrt(target.area)
 
 
 def test_a_true_correspondence_gives_the_true_map(symmetric, symmetric_result):

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from engine.geometry import procrustes
-from engine.geometry.procrustes import agreement_in_place, nearest_rotations, nearest_similarity
+from engine.geometry.procrustes import agreement_in_place, mirrored_across, nearest_rotations, nearest_similarity
 
 SMALL = 1e-12
 
@@ -137,6 +137,15 @@ def test_after_the_half_turn_that_fits_best_all_is_in_place(cloud, rng):
     best = agreement_in_place(points, images, weights, half_turn=True)
     turned = max(agreement_in_place(points @ turn.T, images, weights) for turn in turns)
     assert best - 0.05 < turned < best + SMALL
+
+
+def test_the_plane_in_which_points_are_mirrored_is_found(cloud, rng):
+    points, weights = cloud
+    axis = Rotation.from_rotvec([1, 2, 3]).as_matrix()[0]
+    mirrored = points - 2 * np.outer(points @ axis, axis) + 3
+    noise = rng.normal(0, 0.05, points.shape)
+    for images, most in ((mirrored, 1e-9), (5 * mirrored + noise, 0.05)):
+        assert 1 - abs(mirrored_across(points, images, weights) @ axis) < most
 
 
 def test_what_is_stretched_and_moved_is_in_place(cloud):
