@@ -253,9 +253,9 @@ def _by_quaternions(matrices: Floats) -> tuple[Floats, Bools]:
     quaternions = np.stack(
         [e * hj - f * fj + g * fi, f * cj - b * hj - g * ci, b * fj - e * cj + g * cg, e * ci - b * fi - f * cg]
     )
-    quaternions /= np.maximum(np.sqrt(np.einsum("qn,qn->n", quaternions, quaternions)), TINY)
-    sure = (gaps > _SEPARATE) & (np.square(quaternions[0]) > _REAL)
-    return _rotations(quaternions), sure
+    lengths = np.sqrt(np.einsum("qn,qn->n", quaternions, quaternions))  # the real part times the gaps, or rounding
+    sure = (gaps > _SEPARATE) & (np.square(lengths) > _REAL * np.square(gaps))
+    return _rotations(quaternions / np.maximum(lengths, TINY)), sure
 
 
 def _largest_eigenvalue(entries: Floats) -> tuple[Floats, Floats]:

@@ -121,6 +121,18 @@ def test_points_at_one_place_are_moved_as_they_are():
     np.testing.assert_allclose(np.ones(3) @ linear.T + shift, 2)
 
 
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("angle", [30, 45, 90, 120, 135, 180, 270])
+def test_what_is_flat_along_axes_of_space_is_turned_in_its_plane(rng, axis, angle):
+    flat = rng.standard_normal((300, 3, 3))
+    flat = flat @ flat.transpose(0, 2, 1)
+    flat[:, axis] = flat[:, :, axis] = 0
+    matrices = Rotation.from_rotvec(np.deg2rad(angle) * np.eye(3)[axis]).as_matrix() @ flat
+    rotations = nearest_rotations(matrices)
+    assert_rotations(rotations)
+    np.testing.assert_allclose(agreement(rotations, matrices), best_agreement(matrices), rtol=1e-9)
+
+
 @pytest.fixture
 def cloud(rng):
     """Points that spread to another extent along every axis, and how much each counts."""
