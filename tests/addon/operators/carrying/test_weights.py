@@ -268,7 +268,7 @@ def test_torn_vertices_are_filled_in_marked_and_told(pair):
     passage, astray = torn_passage(source, target)
     report = carry(source, target, passage, mark=True, prefix="P")
     assert abs(dense(target) - dense(source))[astray].max() < 0.3
-    assert f'of "{target.name}" were filled in' in report.notes[0]
+    assert f'of "{target.name}" were taken from their neighbors' in report.notes[0]
     attribute = target.data.attributes["P Rejected"]
     colors = np.empty(4 * len(target.data.vertices), np.float32)
     attribute.data.foreach_get("color", colors)
