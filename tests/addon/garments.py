@@ -36,6 +36,14 @@ def in_world(obj):
     return positions(obj) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
+def evaluated(obj):
+    """Where the vertices of an object are in the world as keys and modifiers show them, (n, 3)."""
+    bpy.context.view_layer.update()
+    made = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    matrix = np.array(made.matrix_world)
+    return np.array([vertex.co for vertex in made.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
+
+
 def wear(*items, **options):
     """Press the button Wear with some items, of the Source onto the Target if not said otherwise."""
     named = [{"name": item} for item in items]

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from tests.addon.garments import fitted, in_world, wear
+from tests.addon.garments import evaluated, fitted, in_world, wear
 
 
 def add_empty(place):
@@ -15,13 +15,6 @@ def add_empty(place):
     empty.location = place
     bpy.context.view_layer.update()
     return empty
-
-
-def evaluated(obj):
-    bpy.context.view_layer.update()
-    made = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    matrix = np.array(made.matrix_world)
-    return np.array([vertex.co for vertex in made.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def notes():

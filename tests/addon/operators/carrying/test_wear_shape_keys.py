@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.addon.garments import add_twin, fitted, in_world, wear
+from tests.addon.garments import add_twin, evaluated, fitted, in_world, wear
 from tests.addon.shape_keys import positions
 
 
@@ -115,13 +115,6 @@ def add_belly(body, name="Belly"):
     normals = np.array([vertex.normal for vertex in body.data.vertices])
     key.data.foreach_set("co", (points + 0.1 * chosen[:, None] * normals).astype(np.float32).ravel())
     return chosen
-
-
-def evaluated(obj):
-    bpy.context.view_layer.update()
-    made = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    matrix = np.array(made.matrix_world)
-    return np.array([vertex.co for vertex in made.data.vertices]) @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def test_items_follow_the_keys_of_the_body(dressed_pair):
