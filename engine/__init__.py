@@ -64,7 +64,7 @@ from .retarget.wrapping import WrappedSurface, kept_in_place, wrap_steps
 from .runtime.background import Background, called_steps
 from .runtime.errors import HierMatchError, MatchError, MeshError, RigError, SettingsError
 from .runtime.progress import Preview, Progress, Steps, run, within
-from .runtime.worker import close_helpers, use_processes
+from .runtime.worker import call_background, close_helpers, use_processes
 from .shapes.known_shapes import KnownShapes
 from .shapes.shape import Shape
 from .shapes.surface_distances import distances_to_vertices_steps
@@ -129,6 +129,7 @@ __all__ = [
     "at_rest",
     "bone_frames",
     "bones_of_items",
+    "call_background",
     "called_steps",
     "carry_face_values",
     "carry_normals",

@@ -15,13 +15,14 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy
 
-from .messages import PACKAGE, SentObjects, unpack
+from .messages import PACKAGE, SentObjects, pack, unpack
 from .pipes import Inbox, has_more, send, sent_in_parts
 from .progress import Progress, Steps
 from .worker_main import LEFT, READY
@@ -82,7 +83,9 @@ class Helper:
 
     Parameters
     ----------
-    processes : int, optional
+    *functions : callable
+        What it will be asked for: it imports their modules, and starts helpers of its own, while nothing is asked yet.
+    processes : int
         How many processes may be at work on its orders, itself counted.  Only a process that does whole computations
         has some of its own; whoever asks for those is not kept waiting by the reading of long replies.
 
@@ -92,7 +95,7 @@ class Helper:
         If it cannot be started.
     """
 
-    def __init__(self, processes: int = 1) -> None:
+    def __init__(self, *functions: Callable[..., Steps[Any]], processes: int = 1) -> None:
         hidden = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # Windows would open a console
         self._process = subprocess.Popen(  # noqa: S603 - this interpreter
             [sys.executable, "-c", _BEGIN.format(idle=_IDLE if processes == 1 else _LONG_IDLE), str(_ROOT)],
@@ -113,6 +116,7 @@ class Helper:
         self._begun, self._heard = False, b""
         with suppress(OSError):
             send(self._orders, PACKAGE.encode())
+            send(self._orders, pack(partial(call_helpers, *functions)) if functions else b"")
 
     @property
     def pid(self) -> int:
@@ -289,17 +293,22 @@ def search_threads() -> int:
     return max(min(crew.cores, _cores()) - sum(helper.is_busy for helper in crew.helpers), 1)
 
 
-def call_helpers() -> None:
-    """Start helpers, as many as are allowed, without waiting for them: they are ready soon."""
+def call_helpers(*functions: Callable[..., Steps[Any]]) -> None:
+    """Start helpers, as many as are allowed, without waiting for them: they are ready soon; see `Helper`."""
     crew = _own_crew()
     missing = crew.most - 1 - len(crew.present())
     if missing > 0 and _can_start():
         with suppress(OSError):
-            crew.helpers += [Helper() for _ in range(missing)]
+            crew.helpers += [Helper(*functions) for _ in range(missing)]
 
 
-def call_background() -> Helper | None:
+def call_background(*functions: Callable[..., Steps[Any]]) -> Helper | None:
     """Start the process that does whole computations, if it does not wait for one already, without waiting for it.
+
+    Parameters
+    ----------
+    *functions : callable
+        What it will be asked for, if it is started, see `Helper`.
 
     Returns
     -------
@@ -312,7 +321,7 @@ def call_background() -> Helper | None:
         crew.background = None
     if crew.background is None and crew.most > 1 and _can_start():
         with suppress(OSError):
-            crew.background = Helper(crew.most)
+            crew.background = Helper(*functions, processes=crew.most)
     return None if crew.background is None or crew.background.is_busy or crew.background.is_over else crew.background
 
 

@@ -37,14 +37,16 @@ def serve(idle: float) -> int:
     its progress is told on the way.  There follow one message for each that is new, and one with a function, what all
     items have in common, and an item.  A reply is a pair: None and the progress on the way; True and the result, or
     the error if the input is at fault; False and the traceback if it could not be carried out.  With the result of what
-    is followed come the warnings.  The first message of all names the package that is called ``engine`` here; when all
-    is ready, that is said by `READY`.
+    is followed come the warnings.  The first message of all names the package that is called ``engine`` here; the
+    second, if it is not empty, has a function to call if nothing is asked yet.  When all is ready, `READY` says that.
     """
     orders, replies = 0, os.dup(1)
     os.dup2(2, 1)  # what is printed is no reply
     try:
-        package = receive(orders).decode()
+        package, ahead = receive(orders).decode(), receive(orders)
         os.write(replies, READY)
+        if ahead and not has_more(orders):
+            unpack(ahead, package)()
         known: dict[int, Any] = {}
         while has_more(orders, idle):
             gone, new, is_followed = pickle.loads(receive(orders))  # noqa: S301 - of the process that started this one

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
-from ...engine import MatchSettings
+from ...engine import MatchSettings, call_background, match_steps
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
 from ..scene.character import parts_of, side_of
 from ..scene.pair import named_side
 from ..storage.excluded_regions import region_names
 from ..storage.writing import LONGEST_PREFIX
+from .panel_state import picked
 from .steering_lists import sync_lists
 from .summary import remember_common
 
@@ -200,11 +201,16 @@ def _is_pickable(_owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool
     return obj.type in ("MESH", "ARMATURE", "EMPTY")
 
 
-def _on_pick(owner: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
-    """Tell of the match that the two meshes carry that are picked now, and list what they have in common."""
+def _on_pick(owner: HIERMATCH_PG_scene, _context: bpy.types.Context) -> None:
+    """Tell of the match that the two meshes carry that are picked now, and list what they have in common.
+
+    In a window, what will match them starts meanwhile.
+    """
     scene = cast("bpy.types.Scene", owner.id_data)
     remember_common(scene)
     sync_lists(scene)
+    if not bpy.app.background and all(picked(owner)):
+        call_background(match_steps)
 
 
 class HIERMATCH_PG_summary(bpy.types.PropertyGroup):

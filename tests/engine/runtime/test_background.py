@@ -209,3 +209,15 @@ def test_a_match_is_the_same_to_the_last_bit():
     np.testing.assert_array_equal(beside.target_distances, here.target_distances)
     assert beside.distortion == here.distortion
     assert beside.notes == here.notes
+
+
+def test_what_is_started_before_it_is_needed_has_imported_what_it_needs():
+    close_helpers()
+    helper, end = call_background(match_steps), time.monotonic() + PATIENCE
+    while not helper.is_ready:
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    time.sleep(1)  # it begins with that, where nothing is asked of it
+    _, known = driven(called_steps(eval, "set(__import__('sys').modules)"), Background())
+    assert helper is call_background()
+    assert match_steps.__module__ in known

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from engine import MatchError, Progress, TriangleMesh, match, run
+from engine.runtime.messages import SentObjects, unpack
 from engine.runtime.parallel_map import beside_steps, here_steps, shared_steps
-from engine.runtime.pipes import send
+from engine.runtime.pipes import receive, send
 from engine.runtime.worker import call_helpers, close_helpers, present_helpers, search_threads, use_processes
 from engine.runtime.worker_main import READY
 from tests import shared_work
@@ -194,9 +195,20 @@ def test_idle_helpers_end():
     script = "from engine.runtime.worker_main import serve; serve(0.1)"
     streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
     with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, bufsize=0, **streams) as process:
-        send(process.stdin.fileno(), b"engine")
+        for message in (b"engine", b""):
+            send(process.stdin.fileno(), message)
         assert process.stdout.read(len(READY)) == READY
         assert process.wait(PATIENCE) == 0
+
+
+def test_what_is_asked_at_once_does_not_wait_for_what_may_be_asked_later():
+    script = "from engine.runtime.worker_main import serve; serve(0.1)"
+    streams = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
+    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, bufsize=0, **streams) as process:
+        for message in (b"engine", b"no function", *SentObjects().messages((shared_work.process_of, 0, 0))):
+            send(process.stdin.fileno(), message)
+        assert process.stdout.read(len(READY)) == READY
+        assert unpack(receive(process.stdout.fileno()), "engine") == (True, process.pid)
 
 
 @pytest.mark.usefixtures("no_helpers")
