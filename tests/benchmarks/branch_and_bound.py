@@ -14,12 +14,8 @@ without a linear term, and ours is run on these once more.
 """
 
 import argparse
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp, quadratic_assignment

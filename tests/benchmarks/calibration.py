@@ -20,14 +20,10 @@ Written are calibration.csv, the rows, which --rows reads instead of matching, a
 
 import argparse
 import csv
-import os
 import time
 from dataclasses import asdict, dataclass, fields
 from itertools import pairwise
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.optimize import minimize

@@ -17,13 +17,9 @@ times 100, of the vertices of the bodies that those of garments were lifted from
 """
 
 import argparse
-import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.spatial import cKDTree

@@ -11,11 +11,8 @@ many degrees bones point elsewhere than they should.
 """
 
 import argparse
-import os
 import time
 from types import SimpleNamespace
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import bpy
 import numpy as np

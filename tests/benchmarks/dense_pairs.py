@@ -40,9 +40,6 @@ import time
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
 import numpy as np
 from scipy.stats import spearmanr
 

@@ -21,14 +21,10 @@ make some 80,000, 320,000 and 1,280,000 vertices of 5,000; the surface stays the
 
 import argparse
 import multiprocessing
-import os
 import resource
 import sys
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from engine import MatchSettings, match
 from engine.runtime.worker import close_helpers

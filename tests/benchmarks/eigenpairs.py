@@ -11,13 +11,9 @@ subfolders.
 """
 
 import argparse
-import os
 import resource
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.sparse import csc_array, diags_array

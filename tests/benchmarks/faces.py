@@ -20,12 +20,8 @@ is known from the model.  A row holds, for one head:
 
 import argparse
 import itertools
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import bpy
 import numpy as np

@@ -12,13 +12,9 @@ of its own.  Written are figure4.csv and figure4.svg.
 
 import argparse
 import csv
-import os
 import time
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from engine import MatchSettings, Shape, match, run
 from engine.hierarchical.compared.flat import flat_candidates

@@ -12,12 +12,8 @@ renders the one that comes closest to it on the way.
 """
 
 import argparse
-import os
 from dataclasses import dataclass
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import bpy
 import numpy as np

@@ -19,12 +19,7 @@ or more.
 """
 
 import argparse
-import os
 import time
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
 from dataclasses import dataclass
 
 import bpy

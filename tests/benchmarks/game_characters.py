@@ -13,12 +13,8 @@ away; the confidence and the seconds.  Then follow the means of each character.
 """
 
 import argparse
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 

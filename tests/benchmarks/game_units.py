@@ -20,9 +20,6 @@ import multiprocessing
 import os
 from pathlib import Path
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
 import numpy as np
 
 from tests.benchmarks.g3d_models import areas, largest_part, read_unit

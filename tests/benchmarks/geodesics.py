@@ -10,12 +10,8 @@ holds .off files, in any subfolders.
 """
 
 import argparse
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import potpourri3d

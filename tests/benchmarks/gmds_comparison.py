@@ -14,13 +14,9 @@ over theirs, of the mean and the maximum averaged over pairs; the paper reports 
 """
 
 import argparse
-import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 

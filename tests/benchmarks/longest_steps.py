@@ -16,8 +16,6 @@ import os
 import time
 from pathlib import Path
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ["HIERMATCH_PROCESSES"] = "1"  # with helpers no two runs have the same steps
 
 import numpy as np

@@ -11,13 +11,9 @@ the other side; the confidence of that match in %; and what is not right on some
 
 import argparse
 import json
-import os
 import re
 from itertools import permutations
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.sparse import csr_array

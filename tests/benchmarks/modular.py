@@ -16,13 +16,9 @@ the seconds.  Errors are geodesic distances on the whole shapes, over the square
 """
 
 import argparse
-import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.sparse import coo_array

@@ -16,11 +16,7 @@ and with keeping them; and seconds of processor time for the motion of a minute 
 
 import argparse
 import difflib
-import os
 import time
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.spatial.transform import Rotation

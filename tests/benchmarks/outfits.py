@@ -12,15 +12,11 @@ the scorer (see its --help): lengths are in % of the body's height, and 0 is the
 """
 
 import argparse
-import os
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import bpy
 import numpy as np

@@ -18,13 +18,9 @@ part that they are measured on, times 100.  A pair is right if both are below 8.
 """
 
 import argparse
-import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import potpourri3d

@@ -15,12 +15,8 @@ the mirrored one, and the same for the engine's other answer.
 """
 
 import argparse
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import bpy
 import numpy as np

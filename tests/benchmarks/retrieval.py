@@ -11,13 +11,9 @@ with all classes of people taken together, and seconds: per shape for what is do
 """
 
 import argparse
-import os
 import re
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 

@@ -9,13 +9,9 @@ source and of the matched points, in percent of the square root of the area, as 
 """
 
 import argparse
-import os
 import sys
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import bpy
 import numpy as np

@@ -21,8 +21,6 @@ import time
 from itertools import permutations
 from pathlib import Path
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("HIERMATCH_PROCESSES", "1")
 
 import bpy

@@ -16,11 +16,7 @@ Errors are distances in space over the square root of the area, times 100.
 """
 
 import argparse
-import os
 import time
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.spatial import ConvexHull

@@ -15,12 +15,8 @@ errors of `symmetry_map`, rounded to vertices, at 200 vertices spread over the s
 """
 
 import argparse
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from scipy.spatial import cKDTree

@@ -13,12 +13,8 @@ more than 20 away, such as a leg taken for a tail; what the match says of itself
 """
 
 import argparse
-import os
 import time
 from pathlib import Path
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 import potpourri3d

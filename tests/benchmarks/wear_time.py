@@ -15,8 +15,6 @@ import os
 import pstats
 import time
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("HIERMATCH_PROCESSES", "1")
 
 import bpy
