@@ -14,8 +14,6 @@ for each vertex of the target a triangle of the source and the coordinates there
 the shares of vertices that got the weights of the wrong side or limb.
 """
 
-import argparse
-import subprocess
 import sys
 import tempfile
 import time
@@ -24,6 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
+from tests.benchmarks.scored_scenes import chosen_scenes, rows_of, scene_parser, scored
 
 OURS = "asis_hiermatch"
 PEERS = ("ref_nearest_vertex", "asis_dt_face", "manual_dt_face", "perfect_dt_face")
@@ -50,13 +49,7 @@ def meshes(path):
         return source, TriangleMesh(scene["tgt_verts"], fans(scene["tgt_faces"], scene["tgt_face_offsets"]))
 
 
-def scored(scorer, scene, result):
-    """Heading and row that the scorer prints."""
-    command = [sys.executable, str(scorer), str(scene), str(result), "--name", OURS]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
-
-
-def measure(path, scorer, peers, folder):
+def measure(path, scorer, folder):
     print(f"\n{path.stem}")
     source, target = meshes(path)
     start = time.perf_counter()
@@ -68,9 +61,8 @@ def measure(path, scorer, peers, folder):
     seconds = time.perf_counter() - start
     answer = folder / path.name
     np.savez(answer, tri=result.target_to_source.triangles, bary=result.target_to_source.barycentric)
-    heading, row = scored(scorer, path, answer)
-    names = [f"{path.stem}/{peer}" for peer in PEERS]
-    print("\n".join([heading, row, *(line for line in peers if line.split(" ")[0] in names)]))
+    own = scored(scorer, path, answer, "--name", OURS)
+    print("\n".join([*own, *rows_of(scorer, "PEERS.md", path.stem, PEERS).values()]))
     quality = result.quality
     margin = "none" if quality.margin is None else f"{quality.margin:.3f}"
     print(
@@ -85,18 +77,10 @@ def measure(path, scorer, peers, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", type=Path, required=True, help="folder with the scenes")
-    parser.add_argument("--scorer", type=Path, required=True, help="the program that scores a result")
-    parser.add_argument("--only", help="names of scenes, separated by commas (default all)")
-    options = parser.parse_args()
-    table = options.scorer.parent / "PEERS.md"
-    peers = table.read_text().splitlines() if table.exists() else []
-    chosen = options.only.split(",") if options.only else None
+    options = scene_parser(__doc__).parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        for path in sorted(options.scenes.glob("*.npz")):
-            if chosen is None or path.stem in chosen:
-                measure(path, options.scorer, peers, Path(folder))
+        for path in chosen_scenes(options, ".npz"):
+            measure(path, options.scorer, Path(folder))
 
 
 if __name__ == "__main__":

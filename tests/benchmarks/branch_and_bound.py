@@ -14,7 +14,6 @@ without a linear term, and ours is run on these once more.
 """
 
 import argparse
-import time
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +25,7 @@ from engine.hierarchical.exact.branch_and_bound import distinct_matchings_steps
 from engine.hierarchical.problem import MatchingProblem
 from engine.hierarchical.sampled_pair import Pair
 from engine.shapes.shape import Shape
+from tests.benchmarks.common import read_off, timed
 from tests.problems import branch_and_bound
 from tests.shapes import creature
 
@@ -37,15 +37,6 @@ SAMPLES = 256  # that the descriptors are measured by
 HIGHS_SIZES = ((6, 12), (8, 16), (10, 20))
 HIGHS_SECONDS = 120
 FAQ_SIZES = (10, 15, 20)
-
-
-def read_off(path):
-    """Read an .off file of triangles."""
-    words = path.read_text().split()
-    count, faces = int(words[1]), int(words[2])
-    numbers = np.array(words[4:], float)
-    triangles = numbers[3 * count : 3 * count + 4 * faces].reshape(faces, 4)[:, 1:]
-    return TriangleMesh(numbers[: 3 * count].reshape(count, 3), triangles.astype(np.int64))
 
 
 def sampled(mesh):
@@ -61,12 +52,7 @@ def instances(data, names):
     if data is not None:
         for name in names.split(","):
             paths = [next(data.rglob(f"{stem}.off")) for stem in name.split(":")]
-            yield name, Pair(*(sampled(read_off(path)) for path in paths), MatchSettings())
-
-
-def timed(function):
-    start = time.process_time()
-    return function(), time.process_time() - start
+            yield name, Pair(*(sampled(TriangleMesh(*read_off(path))) for path in paths), MatchSettings())
 
 
 def report(name, problem):

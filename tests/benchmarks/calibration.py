@@ -21,7 +21,7 @@ Written are calibration.csv, the rows, which --rows reads instead of matching, a
 import argparse
 import csv
 import time
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields
 from itertools import pairwise
 from pathlib import Path
 
@@ -31,6 +31,7 @@ from scipy.special import expit, logit, xlogy
 
 from engine import HierMatchError, MatchSettings, match
 from engine.dense import credibility
+from tests.benchmarks.common import write_rows
 from tests.benchmarks.known_shapes import LOST, KnownShapes
 
 WRONG = 0.03
@@ -192,13 +193,6 @@ def read(path):
         ]
 
 
-def write(path, rows):
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(row) for row in rows)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, help="folder with the shapes")
@@ -219,7 +213,7 @@ def main():
             row = measured(shapes, str(first), str(second), one_kind=one_kind)
             if row is not None:
                 rows.append(row)
-                write(options.output / "calibration.csv", rows)
+                write_rows(options.output / "calibration.csv", rows)
                 kind = "right" if row.right else "WRONG"
                 print(f"{first} -> {second}: likeness {row.likeness:.1f}, {kind}, {row.seconds:.0f} s", flush=True)
     fitted = report(rows)

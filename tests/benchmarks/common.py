@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the benchmarks share: reading shapes, pairs with known correspondence, and the error of a match."""
+"""What the benchmarks share: reading shapes, pairs with known correspondence, the error of a match, and its time."""
 
-from dataclasses import dataclass
+import csv
+import multiprocessing
+import os
+import time
+from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -27,6 +31,29 @@ def known(path, suffix=""):
     With the suffix ".sym", those of the mirror image.
     """
     return np.loadtxt(path.parent / "corres" / f"{path.stem}{suffix}.vts", dtype=int) - 1
+
+
+def timed(function):
+    """Call a function: what it returns, and the seconds of processor time."""
+    start = time.process_time()
+    return function(), time.process_time() - start
+
+
+def each_in_its_process(measure, tasks, jobs):
+    """Yield what a function makes of each task, in their order, so many at the same time; then each has one core."""
+    if jobs > 1:
+        os.environ["HIERMATCH_PROCESSES"] = "1"
+    with multiprocessing.get_context("spawn").Pool(jobs) as pool:
+        yield from pool.imap(measure, tasks)
+
+
+def write_rows(path, rows):
+    """Write instances of a dataclass as a table, .csv."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, [field.name for field in fields(rows[0])])
+        writer.writeheader()
+        writer.writerows(map(asdict, rows))
 
 
 @dataclass(frozen=True, eq=False)

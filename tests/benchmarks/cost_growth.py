@@ -16,16 +16,16 @@ cost_growth.csv and cost_growth.svg.
 """
 
 import argparse
-import csv
 import multiprocessing
 import time
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from engine import KnownShapes, MatchSettings, TriangleMesh, match, use_processes
+from tests.benchmarks.common import write_rows
 from tests.benchmarks.dense_scale import peak, peak_of_helpers
 from tests.shapes import creature, subdivided
 
@@ -127,11 +127,7 @@ def main():
                 cost = pool.submit(measured, of, size).result()
             costs.append(cost)
             print(f"{of:9s} {cost.size:8d} {cost.seconds:8.1f} s {cost.peak:7.0f} MB", flush=True)
-    options.output.mkdir(parents=True, exist_ok=True)
-    with (options.output / "cost_growth.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Cost)])
-        writer.writeheader()
-        writer.writerows(asdict(cost) for cost in costs)
+    write_rows(options.output / "cost_growth.csv", costs)
     plot(costs, options.output / "cost_growth.svg")
     print(f"Written: {options.output / 'cost_growth.csv'} and cost_growth.svg")
 

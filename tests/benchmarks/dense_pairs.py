@@ -33,17 +33,15 @@ that all that may change them is the match.
 """
 
 import argparse
-import csv
-import multiprocessing
-import os
 import time
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 from scipy.stats import spearmanr
 
 from engine import HierMatchError, MatchSettings, match
+from tests.benchmarks.common import each_in_its_process, write_rows
 from tests.benchmarks.known_shapes import LISTED, KnownShapes, score
 from tests.benchmarks.variants import VARIANTS, as_is
 
@@ -241,27 +239,13 @@ def changes(rows, base):
 def run(tasks, jobs, columns, csv_path):
     """Measure all, printing rows as they come; the rows."""
     rows = []
-    if jobs > 1:
-        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
-    pool = multiprocessing.get_context("spawn").Pool(jobs) if jobs > 1 else None
-    try:
-        for row in pool.imap(measure, tasks) if pool else map(measure, tasks):
-            rows.append(row)
-            name = f"{row.source} -> {row.target}" + (f" ({row.variant})" if row.variant != AS_IS else "")
-            print(line(name, asdict(row), columns), wrong(row), flush=True)
-            if csv_path:
-                write(csv_path, rows)
-    finally:
-        if pool:
-            pool.terminate()
+    for row in each_in_its_process(measure, tasks, jobs):
+        rows.append(row)
+        name = f"{row.source} -> {row.target}" + (f" ({row.variant})" if row.variant != AS_IS else "")
+        print(line(name, asdict(row), columns), wrong(row), flush=True)
+        if csv_path:
+            write_rows(csv_path, rows)
     return rows
-
-
-def write(path, rows):
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Row)])
-        writer.writeheader()
-        writer.writerows(asdict(row) for row in rows)
 
 
 def main():

@@ -23,7 +23,7 @@ from engine import TriangleMesh
 from engine.geometry.eigenpairs import eigenpairs, eigenpairs_steps
 from engine.geometry.intrinsic_delaunay import intrinsic_delaunay
 from engine.geometry.laplacian import laplace_beltrami
-from tests.benchmarks.geodesics import read_off
+from tests.benchmarks.common import read_off, timed
 from tests.shapes import creature, icosphere, irregular, subdivided
 
 try:
@@ -33,12 +33,6 @@ except ImportError:
 
 REPEATS = 3
 NAMED_FILES = ("cat0", "michael0")
-
-
-def timed(call):
-    start = time.process_time()
-    result = call()
-    return result, time.process_time() - start
 
 
 def reference(stiffness, mass, count):

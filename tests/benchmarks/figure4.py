@@ -11,16 +11,15 @@ of its own.  Written are figure4.csv and figure4.svg.
 """
 
 import argparse
-import csv
 import time
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
 from engine import MatchSettings, Shape, match, run
 from engine.hierarchical.compared.flat import flat_candidates
 from engine.hierarchical.exact.branch_and_bound import branch_and_bound_steps
 from engine.hierarchical.sampled_pair import Pair
-from tests.benchmarks.common import creature_pairs, data_pairs
+from tests.benchmarks.common import creature_pairs, data_pairs, write_rows
 
 SIZES = "6,8,10,12,14,16,18,20,22,24,26,28,30,32,36,40,48,64,96,128,192,256,384,512"
 PAIR = "cat0:cat1"
@@ -127,11 +126,7 @@ def main():
             f"(and {found.precomputation:5.2f} s before), distortion {found.distortion:9.4f}{proof}",
             flush=True,
         )
-    options.output.mkdir(parents=True, exist_ok=True)
-    with (options.output / "figure4.csv").open("w", newline="") as file:
-        writer = csv.DictWriter(file, [field.name for field in fields(Run)])
-        writer.writeheader()
-        writer.writerows(asdict(found) for found in runs)
+    write_rows(options.output / "figure4.csv", runs)
     title = f"Time to match points of {known.name.replace(':', ' to ')}"
     plot(runs, options.limit, title, options.output / "figure4.svg")
     print(f"Written: {options.output / 'figure4.csv'} and figure4.svg")

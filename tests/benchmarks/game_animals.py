@@ -18,8 +18,6 @@ is counted how many are wrong, and how many of those have a confidence of one ha
 
 import argparse
 import itertools
-import multiprocessing
-import os
 import time
 from dataclasses import dataclass
 from functools import cache
@@ -29,6 +27,7 @@ import numpy as np
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
 from engine.geometry.geodesics import GeodesicSolver
+from tests.benchmarks.common import each_in_its_process
 from tests.benchmarks.game_models import Archive
 from tests.benchmarks.remeshed import Remeshed, compared, remeshed, said
 from tests.shapes import rotation, subdivided
@@ -196,20 +195,16 @@ def main():
     parser.add_argument("--jobs", type=int, default=1, help="pairs matched at the same time (default 1)")
     options = parser.parse_args()
     archive = Archive(options.archive)
-    if options.jobs > 1:
-        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
-    with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
-        drawn = long_pairs(archive) if options.long else drawn_pairs(archive, options.pairs, options.seed)
-        for title, pairs in drawn.items():
-            print(f"{title:48s} {'':30s} margin conf. seconds")
-            wrong, sure = 0, 0
-            for line, failed, confidence in pool.imap(measure, [(archive, pair) for pair in pairs]):
-                print(line, flush=True)
-                wrong += failed
-                sure += failed and confidence >= CONFIDENT
-            print(
-                f"{wrong} of {len(pairs)} wrong, {sure} of them with a confidence of {CONFIDENT} or more\n", flush=True
-            )
+    drawn = long_pairs(archive) if options.long else drawn_pairs(archive, options.pairs, options.seed)
+    for title, pairs in drawn.items():
+        print(f"{title:48s} {'':30s} margin conf. seconds")
+        wrong, sure = 0, 0
+        tasks = [(archive, pair) for pair in pairs]
+        for line, failed, confidence in each_in_its_process(measure, tasks, options.jobs):
+            print(line, flush=True)
+            wrong += failed
+            sure += failed and confidence >= CONFIDENT
+        print(f"{wrong} of {len(pairs)} wrong, {sure} of them with a confidence of {CONFIDENT} or more\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -16,12 +16,11 @@ Of pyramids and towers several maps are right, of which one is asked for.
 
 import argparse
 import itertools
-import multiprocessing
-import os
 from pathlib import Path
 
 import numpy as np
 
+from tests.benchmarks.common import each_in_its_process
 from tests.benchmarks.g3d_models import areas, largest_part, read_unit
 from tests.benchmarks.remeshed import compared, remeshed
 from tests.shapes import rotation, subdivided
@@ -84,17 +83,14 @@ def main():
     parser.add_argument("--only", default="", help="part of the names of the bodies to match")
     parser.add_argument("--jobs", type=int, default=1, help="bodies at the same time (default 1)")
     options = parser.parse_args()
-    if options.jobs > 1:
-        os.environ["HIERMATCH_PROCESSES"] = "1"  # each has one core
     print(f"{'':36s} {'mean far, there and back':30s} margin conf. seconds")
     count = wrong = sure = 0
-    with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
-        for rows in pool.imap(measure, bodies(options.data, options.only).items()):
-            for line, failed, confident in rows:
-                print(line, flush=True)
-                count += 1
-                wrong += failed
-                sure += failed and confident
+    for rows in each_in_its_process(measure, bodies(options.data, options.only).items(), options.jobs):
+        for line, failed, confident in rows:
+            print(line, flush=True)
+            count += 1
+            wrong += failed
+            sure += failed and confident
     print(f"{wrong} of {count} wrong, {sure} of them with a confidence of {CONFIDENT} or more")
 
 

@@ -10,7 +10,6 @@ holds .off files, in any subfolders.
 """
 
 import argparse
-import time
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,7 @@ import potpourri3d
 
 from engine import TriangleMesh
 from engine.geometry.geodesics import GeodesicSolver
-from tests.benchmarks.common import read_off
+from tests.benchmarks.common import read_off, timed
 from tests.shapes import creature, icosphere, irregular, plane, subdivided
 
 REPEATS = 3
@@ -60,12 +59,6 @@ def great_circle(vertices, sources):
 def refined(vertices, triangles, sources):
     solver = GeodesicSolver(TriangleMesh(*subdivided(vertices, triangles, REFERENCE_PARTS)))
     return np.concatenate([block[:, : len(vertices)] for _, block in solver.distances_in_blocks(sources)])
-
-
-def timed(call):
-    start = time.process_time()
-    result = call()
-    return result, time.process_time() - start
 
 
 def measure(name, vertices, triangles, sources, exact):

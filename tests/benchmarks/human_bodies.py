@@ -19,8 +19,6 @@ Wrong is what takes more than 3 % of the places that far.
 import argparse
 import gzip
 import json
-import multiprocessing
-import os
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -28,6 +26,7 @@ from pathlib import Path
 import numpy as np
 
 from engine import TriangleMesh
+from tests.benchmarks.common import each_in_its_process
 from tests.benchmarks.remeshed import Remeshed, compared, remeshed
 from tests.shapes import rotation, subdivided
 
@@ -180,13 +179,10 @@ def main():
     options = parser.parse_args()
     numbers = np.random.default_rng(options.seed).integers(2**31, size=(options.pairs, 2)).tolist()
     tasks = [(options.bodies, pair, options.vertices, options.split) for pair in numbers]
-    if options.jobs > 1:
-        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
-    with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
-        rows = []
-        for line, wrong, row in pool.imap(measure, tasks):
-            print(line, flush=True)
-            rows.append((wrong, row))
+    rows = []
+    for line, wrong, row in each_in_its_process(measure, tasks, options.jobs):
+        print(line, flush=True)
+        rows.append((wrong, row))
     there, back, _, seconds = np.mean([row for _, row in rows if row], axis=0)
     print(f"mean {there:.2f} and {back:.2f}, {seconds:.1f} s; {sum(wrong for wrong, _ in rows)} of {len(rows)} wrong")
 

@@ -11,8 +11,6 @@ What is scored is what `hiermatch.wear` makes with its default options, the matc
 the scorer (see its --help): lengths are in % of the body's height, and 0 is the best everywhere.
 """
 
-import argparse
-import subprocess
 import sys
 import tempfile
 import time
@@ -21,7 +19,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from tests.addon.conftest import load_extension
+from tests.benchmarks.retarget_scenes import weights_of
+from tests.benchmarks.scored_scenes import chosen_scenes, rows_of, scene_parser, scored
+from tools.source_extension import registered_extension
 
 OURS = "hiermatch"
 PEERS = ("manual_shrink", "shrinkwrap", "rbf_engine", "rbf_push", "proto_engine", "proto_true")
@@ -33,17 +33,6 @@ def in_world(obj):
     obj.data.vertices.foreach_get("co", points)
     matrix = np.array(obj.matrix_world)
     return points.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
-
-
-def weights(obj, bones):
-    """Weights of an object's groups of such names, (n, b)."""
-    columns = {group.index: bones.index(group.name) for group in obj.vertex_groups if group.name in bones}
-    table = np.zeros((len(obj.data.vertices), len(bones)))
-    for vertex in obj.data.vertices:
-        for element in vertex.groups:
-            if element.group in columns:
-                table[vertex.index, columns[element.group]] = element.weight
-    return table
 
 
 def fit(path):
@@ -61,7 +50,7 @@ def fit(path):
     result = {"bones": np.array(bones)}
     for obj in made:
         name = obj["hiermatch_item"].removeprefix("A_")
-        result[name], result[f"{name}_weights"] = in_world(obj), weights(obj, bones)
+        result[name], result[f"{name}_weights"] = in_world(obj), weights_of(obj, bones)
     return result
 
 
@@ -73,33 +62,21 @@ def means(rows, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", type=Path, required=True, help="folder with the scenes")
-    parser.add_argument("--scorer", type=Path, required=True, help="the program that scores a result")
-    parser.add_argument("--only", help="names of scenes, separated by commas (default all)")
+    parser = scene_parser(__doc__)
     parser.add_argument("--garments", action="store_true", help="print a row for each garment as well")
     options = parser.parse_args()
-    load_extension().register()
-    table = options.scorer.parent / "PEERS-outfits.md"
-    peers = table.read_text().splitlines() if table.exists() else []
-    chosen = options.only.split(",") if options.only else None
+    registered_extension()
     rows = {name: [] for name in (OURS, *PEERS)}
     with tempfile.TemporaryDirectory() as folder:
-        for path in sorted(options.scenes.glob("*.blend")):
-            if chosen is not None and path.stem not in chosen:
-                continue
+        for path in chosen_scenes(options, ".blend"):
             answer = Path(folder, f"{OURS}.npz")
             np.savez(answer, **fit(path))
-            command = [sys.executable, str(options.scorer), str(path.with_suffix(".npz")), str(answer)]
-            command += ["--per-garment"] if options.garments else []
-            heading, row, *garments = subprocess.run(
-                command, check=True, capture_output=True, text=True
-            ).stdout.splitlines()
-            rows[OURS].append(row)
-            theirs = {name: [line for line in peers if line.startswith(f"{path.stem}/{name} ")] for name in PEERS}
-            for name, lines in theirs.items():
-                rows[name] += lines[:1]
-            print("\n".join([heading, row, *garments, *(line for lines in theirs.values() for line in lines[:1])]))
+            more = ["--per-garment"] if options.garments else []
+            heading, row, *garments = scored(options.scorer, path.with_suffix(".npz"), answer, *more)
+            theirs = rows_of(options.scorer, "PEERS-outfits.md", path.stem, PEERS)
+            for name, line in {OURS: row, **theirs}.items():
+                rows[name].append(line)
+            print("\n".join([heading, row, *garments, *theirs.values()]))
             sys.stdout.flush()
     # Of the scenes that were run, and of who has figures for all of them.
     print("\n".join(["", *(means(all_, name) for name, all_ in rows.items() if all_ and len(all_) == len(rows[OURS]))]))

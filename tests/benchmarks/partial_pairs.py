@@ -17,8 +17,6 @@ Errors are geodesic distances on the whole shapes, over the square root of their
 """
 
 import argparse
-import multiprocessing
-import os
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +26,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from engine import HierMatchError, MatchSettings, TriangleMesh, match
+from tests.benchmarks.common import each_in_its_process
 from tests.benchmarks.known_shapes import LOST, KnownShapes
 
 OTHER_PLANE = 1000
@@ -150,12 +149,9 @@ def main():
     ]
     print(f"{'errors x 100 / sqrt(area)':44s}  to part  of part    lost   conf.  coverage  seconds")
     rows = []
-    if options.jobs > 1:
-        os.environ["HIERMATCH_PROCESSES"] = "1"  # each pair has one core
-    with multiprocessing.get_context("spawn").Pool(options.jobs) as pool:
-        for row in pool.imap(measure, tasks):
-            rows.append(row)
-            print(row, flush=True)
+    for row in each_in_its_process(measure, tasks, options.jobs):
+        rows.append(row)
+        print(row, flush=True)
     print()
     for share in shares:
         part = [row for row in rows if row.kept == share and not row.problem]

@@ -16,9 +16,7 @@ map and, as far as it can, the shape keys.  Printed are
     seconds                  the operator, match included
 """
 
-import argparse
 import json
-import subprocess
 import sys
 import tempfile
 import time
@@ -27,7 +25,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from tests.addon.conftest import load_extension
+from tests.benchmarks.scored_scenes import chosen_scenes, rows_of, scene_parser, scored
+from tools.source_extension import registered_extension
 
 PEERS = ("ref_nearest_vertex", "manual_dt_face", "perfect_dt_face", "manual_rwt")
 STRETCHED = 4.0
@@ -125,12 +124,7 @@ def data_transfer(source, target):
         bpy.ops.object.data_transfer(data_type=kind, use_create=True, **options)
 
 
-def scored(scorer, scene, result, name):
-    command = [sys.executable, str(scorer), str(scene), str(result), "--name", name]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
-
-
-def measure(path, scorer, peers, folder, save):
+def measure(path, scorer, folder, save):
     print(f"\n{path.stem}")
     with np.load(path.with_suffix(".npz")) as scene:
         truth = {name: scene[name] for name in ("bone_names", "gt_bone_head", "gt_bone_tail", "meta")}
@@ -149,7 +143,7 @@ def measure(path, scorer, peers, folder, save):
             run(source, target)
         answer = folder / f"{path.stem}_{name}.npz"
         np.savez(answer, **result_of(target, names))
-        heading, row = scored(scorer, path.with_suffix(".npz"), answer, name)
+        heading, row = scored(scorer, path.with_suffix(".npz"), answer, "--name", name)
         rows.append(row)
         if run is None:
             share, errors = stretched(source, target), joint_errors(new[0], truth, height)
@@ -157,8 +151,7 @@ def measure(path, scorer, peers, folder, save):
             said = [*report.done.splitlines(), *report.notes.splitlines()]
             if save is not None:
                 bpy.ops.wm.save_as_mainfile(filepath=str(save / f"{path.stem}.blend"), copy=True)
-    wanted = [f"{path.stem}/{peer}" for peer in PEERS]
-    print("\n".join([heading, *rows, *(line for line in peers if line.split(" ")[0] in wanted)]))
+    print("\n".join([heading, *rows, *rows_of(scorer, "PEERS.md", path.stem, PEERS).values()]))
     print("joints {:.2f} (largest {:.2f}), tails {:.2f}".format(*errors), end="; ")
     print(f"faces stretched {share:.2%}; {seconds:.1f} s")
     print("\n".join(f"  {line}" for line in said))
@@ -166,20 +159,13 @@ def measure(path, scorer, peers, folder, save):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--scenes", type=Path, required=True, help="folder with the scenes")
-    parser.add_argument("--scorer", type=Path, required=True, help="the program that scores a result")
-    parser.add_argument("--only", help="names of scenes, separated by commas (default all)")
+    parser = scene_parser(__doc__)
     parser.add_argument("--save", type=Path, help="folder to save the retargeted scenes in")
     options = parser.parse_args()
-    load_extension().register()
-    table = options.scorer.parent / "PEERS.md"
-    peers = table.read_text().splitlines() if table.exists() else []
-    chosen = options.only.split(",") if options.only else None
+    registered_extension()
     with tempfile.TemporaryDirectory() as folder:
-        for path in sorted(options.scenes.glob("*.blend")):
-            if chosen is None or path.stem in chosen:
-                measure(path, options.scorer, peers, Path(folder), options.save)
+        for path in chosen_scenes(options, ".blend"):
+            measure(path, options.scorer, Path(folder), options.save)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from engine.matching.retrieval import RetrievalSettings, retrieve
 from engine.mesh.triangle_mesh import TriangleMesh
 from engine.runtime.progress import run
 from engine.shapes.shape import Shape
-from tests.benchmarks.symmetry import read_off
+from tests.benchmarks.common import read_off
 from tests.bodies import mirrored_body, relative_of_creature
 
 PEOPLE = {"man", "michael", "person"}
@@ -68,7 +68,7 @@ def main():
     if options.data is None:
         meshes = dict(generated())
     else:
-        meshes = {path.stem: read_off(path) for path in sorted(options.data.rglob("*.off"))}
+        meshes = {path.stem: TriangleMesh(*read_off(path)) for path in sorted(options.data.rglob("*.off"))}
     names, shapes = list(meshes), [Shape(mesh) for mesh in meshes.values()]
     start = time.perf_counter()
     for shape in shapes:

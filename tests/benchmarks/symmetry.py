@@ -27,26 +27,15 @@ from engine.hierarchical.settings import MatchSettings
 from engine.matching import symmetry_map
 from engine.matching.symmetry import find_symmetry
 from engine.mesh.triangle_mesh import TriangleMesh
+from tests.benchmarks.common import known, read_off
 from tests.bodies import mirrored_body
 from tests.shapes import creature
 
 
-def read_off(path):
-    """Read an .off file of triangles."""
-    words = path.read_text().split()
-    count, faces = int(words[1]), int(words[2])
-    numbers = np.array(words[4:], float)
-    triangles = numbers[3 * count : 3 * count + 4 * faces].reshape(faces, 4)[:, 1:]
-    return TriangleMesh(numbers[: 3 * count].reshape(count, 3), triangles.astype(np.int64))
-
-
 def known_images(path, mesh):
     """For each vertex its mirror image, that of the nearest vertex that has one."""
-    here, there = (
-        np.loadtxt(path.parent / "corres" / f"{path.stem}{suffix}.vts", dtype=int) - 1 for suffix in ("", ".sym")
-    )
-    _, nearest = cKDTree(mesh.vertices[here]).query(mesh.vertices)
-    return there[nearest]
+    _, nearest = cKDTree(mesh.vertices[known(path)]).query(mesh.vertices)
+    return known(path, ".sym")[nearest]
 
 
 def measure(mesh, truth, points):
@@ -121,7 +110,7 @@ def main():
         chosen = options.shapes.split(",") if options.shapes else None
         for path in sorted(options.data.rglob("*.off")):
             if chosen is None or path.stem in chosen:
-                mesh = read_off(path)
+                mesh = TriangleMesh(*read_off(path))
                 rows.append(report(path.stem, mesh, known_images(path, mesh), options.points, options.dense))
     mean, worst, asymmetry, seconds, everywhere = np.array(rows).T
     print(
