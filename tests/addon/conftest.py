@@ -4,28 +4,15 @@
 from __future__ import annotations
 
 import importlib.util
-import sys
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from tools.source_extension import load_extension
+
 HAS_BLENDER = importlib.util.find_spec("bpy") is not None
 
 if not HAS_BLENDER:
     collect_ignore_glob = ["*test_*.py"]
-
-
-def load_extension():
-    """Import the checkout, whatever its folder is called, as the package `hiermatch`."""
-    if "hiermatch" not in sys.modules:
-        spec = importlib.util.spec_from_file_location(
-            "hiermatch", ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
-        )
-        package = importlib.util.module_from_spec(spec)
-        sys.modules["hiermatch"] = package
-        spec.loader.exec_module(package)
-    return sys.modules["hiermatch"]
 
 
 if HAS_BLENDER:

@@ -7,7 +7,7 @@ import ast
 
 import pytest
 
-from tests.addon.conftest import ROOT
+from tools.source_extension import ROOT
 
 READS_CODE_ONLY = True
 """See `conftest.empty_file`: it takes longer than the tests."""

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 def blender_session():
     """Lend Blender with the extension registered and an empty file."""
     module = importlib.import_module("bpy")
-    from tests.addon.conftest import load_extension
+    from tools.source_extension import load_extension
 
     package = load_extension()
     ours = not hasattr(module.types.Scene, "hiermatch")  # unless another test of the session has registered it

@@ -25,9 +25,9 @@ from pathlib import Path
 root, folder, output = (Path(argument) for argument in sys.argv[-3:])
 sys.path.insert(0, str(root))
 import bpy
-from tests.addon.conftest import load_extension
+from tools.source_extension import registered_extension
 
-load_extension().register()
+registered_extension()
 report = {}
 for path in sorted(folder.glob("*.blend")):
     try:

@@ -31,7 +31,7 @@ from hiermatch.hiermatch_addon.transfers.options.wear import WearOptions
 from hiermatch.hiermatch_addon.transfers.options.weights import WeightOptions
 from hiermatch.hiermatch_addon.transfers.options.wrap import WrapOptions
 
-from tests.addon.conftest import ROOT
+from tools.source_extension import ROOT
 
 READS_CODE_ONLY = True
 """See `conftest.empty_file`: it takes longer than the tests."""

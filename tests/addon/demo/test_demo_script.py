@@ -12,8 +12,8 @@ import bpy
 import numpy as np
 import pytest
 
-from tests.addon.conftest import ROOT
 from tools import demo_truth
+from tools.source_extension import ROOT
 
 
 def run_demo(*arguments):

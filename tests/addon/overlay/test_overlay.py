@@ -24,9 +24,9 @@ from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks
 from hiermatch.hiermatch_addon.storage.views.colors import distortion_colors
 from mathutils import Matrix
 
-from tests.addon.conftest import ROOT
 from tests.addon.scenes import QUICK, add_blob, add_pair
 from tests.addon.test_rules import BLENDER, imported
+from tools.source_extension import ROOT
 
 NONE = Marks(np.empty((0, 3)), np.empty((0, 3)), np.empty(0, int))
 

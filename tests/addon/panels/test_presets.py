@@ -20,8 +20,8 @@ from hiermatch.hiermatch_addon.panels.preset_menu import (
 from hiermatch.hiermatch_addon.properties.properties import OPTION_NAMES, match_settings
 from hiermatch.hiermatch_addon.properties.setups import current_setup
 
-from tests.addon.conftest import ROOT
 from tests.addon.scenes import QUICK, add_pair
+from tools.source_extension import ROOT
 
 BUILT_IN = sorted((ROOT / "hiermatch_addon" / "presets" / "hiermatch").glob("*.py"))
 OF_USES = {"_Default", "Fast_Preview", "Two-Legged_Characters", "Creatures", "Scans"}

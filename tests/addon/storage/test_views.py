@@ -13,9 +13,9 @@ from hiermatch.hiermatch_addon.scene.attribute_io import add_values
 from hiermatch.hiermatch_addon.storage.views.view_colors import check_size, checked, region_colors
 from hiermatch.hiermatch_addon.storage.views.views import VIEW_ITEMS, attribute_of
 
-from tests.addon.conftest import ROOT
 from tests.addon.scenes import QUICK, add_pair, edit_twin, mesh_snapshot, snapshot, values_of, weights_of
 from tests.addon.test_rules import BLENDER, imported
+from tools.source_extension import ROOT
 
 VIEWS = [view for view, *_ in VIEW_ITEMS if view != "NONE"]
 

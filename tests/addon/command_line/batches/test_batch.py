@@ -23,8 +23,8 @@ from hiermatch.hiermatch_addon.command_line.outputs import save
 from hiermatch.hiermatch_addon.command_line.program import main, make_parser
 from hiermatch.hiermatch_addon.common.errors import ObjectError
 
-from tests.addon.conftest import ROOT
 from tests.addon.scenes import QUICK, add_blob
+from tools.source_extension import ROOT
 
 STAND_IN = """
 import json, os, pathlib, signal, sys, time
