@@ -54,8 +54,8 @@ Blender cannot read its own pixels on some screens, virtual ones above all: see 
 from __future__ import annotations
 
 import sys
-import traceback
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -70,7 +70,6 @@ from characters import (
     armatures_of,
     assign,
     bind,
-    check,
     extent_of,
     hangs_on,
     separated,
@@ -81,16 +80,10 @@ from characters import (
 )
 from metarig import add_metarig, generate
 from screen import choose_tab, fold, large_view, look_at_selected, view
-from window_events import press, running, until
+from window_events import check, play, press, running, until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-
-_PAUSE = 1.0
-"""Seconds between two steps: enough for a window to be drawn, in software too."""
-
-_DRAWINGS = 2
-"""How often the window is drawn between two steps: new sections of panels are measured at first, and seen at last."""
 
 _APART = 0.6
 """Room between the two characters, in units of the wider one."""
@@ -494,34 +487,15 @@ def main(arguments: list[str]) -> None:
     folder, package, source, target = (Path(argument).resolve() for argument in arguments[:4])
     folder.mkdir(parents=True, exist_ok=True)
     bpy.context.preferences.view.show_splash = bpy.context.preferences.view.show_tooltips = False
-    steps = telling(Story(source, target), Camera(folder, arguments[4:]))
-    to_draw, installed = 0, False
+    camera = Camera(folder, arguments[4:])
+    play(chain(_install(package), telling(Story(source, target), camera)))
 
-    def advance() -> float | None:
-        nonlocal to_draw, installed
-        if to_draw:
-            to_draw -= 1
-            bpy.context.window_manager.windows[0].screen.areas[0].tag_redraw()
-            return _PAUSE
-        try:
-            if not installed:
-                install: Any = cast("Any", bpy.ops).extensions.package_install_files
-                install(filepath=str(package), repo="user_default", enable_on_install=True)
-                installed = True
-                return _PAUSE
-            pause = next(steps)
-        except StopIteration:
-            bpy.ops.wm.quit_blender()
-            return None
-        except Exception:  # noqa: BLE001 - whatever it is, nobody sits before this window
-            traceback.print_exc()
-            sys.stderr.flush()
-            sys.exit(1)
-        if pause is None:
-            to_draw, pause = _DRAWINGS, _PAUSE
-        return pause
 
-    bpy.app.timers.register(advance, first_interval=_PAUSE, persistent=True)
+def _install(package: Path) -> Iterator[float | None]:
+    """Install the zip, once Blender has begun."""
+    install: Any = cast("Any", bpy.ops).extensions.package_install_files
+    install(filepath=str(package), repo="user_default", enable_on_install=True)
+    yield None
 
 
 main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from mathutils import Quaternion, Vector
 from screen import view
+from window_events import check
 
 _WISHED = ("walk", "run", "swim", "gallop")
 """What the name of an action to play should contain, the best first."""
@@ -22,16 +23,6 @@ _SWINGS = {"upperarm": -0.6, "upperleg": 0.6, "thigh": 0.6}
 
 _SIDES = (((".l", "_l", "left"), 1), ((".r", "_r", "right"), -1))
 """How names of bones end on the left and on the right."""
-
-
-class StoryError(Exception):
-    """A step did not do what it should; the message says which."""
-
-
-def check(condition: object, message: str) -> None:
-    """Make sure that a step did what it should."""
-    if not condition:
-        raise StoryError(message)
 
 
 def show_bones(rig: bpy.types.Object) -> None:

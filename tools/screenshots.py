@@ -15,7 +15,6 @@ of the whole screen and is given the file to write, such as `import -window root
 from __future__ import annotations
 
 import sys
-import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,6 +33,7 @@ import page_symmetry
 import page_wear
 from camera import Camera
 from screen import choose_tab, large_view, register_unfolded, set_scene, show_panels
+from window_events import play
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,12 +50,6 @@ PAGES = {
     "symmetry": page_symmetry.pictures,
 }
 """The pages of the manual that have pictures, in the order in which they are taken."""
-
-_PAUSE = 0.8
-"""Seconds between two drawings of the window: enough in software, too."""
-
-_DRAWINGS = 2
-"""How often it is drawn between two steps: new sections of panels are measured at first, and seen at last."""
 
 
 def walk(names: list[str], camera: Camera) -> Iterator[float | None]:
@@ -79,29 +73,7 @@ def main(arguments: list[str]) -> None:
     names = list(PAGES) if arguments[1] == "all" else arguments[1].split(",")
     bpy.context.preferences.view.show_splash = bpy.context.preferences.view.show_tooltips = False
     register_unfolded()
-    steps = walk(names, Camera(folder, arguments[2:]))
-
-    to_draw = 0
-
-    def advance() -> float | None:
-        nonlocal to_draw
-        if to_draw:
-            to_draw -= 1
-            bpy.context.window_manager.windows[0].screen.areas[0].tag_redraw()
-            return _PAUSE
-        try:
-            pause = next(steps)
-        except StopIteration:
-            bpy.ops.wm.quit_blender()
-            return None
-        except Exception:  # noqa: BLE001 - whatever it is, nobody sits before this window
-            traceback.print_exc()
-            sys.exit(1)
-        if pause is None:
-            to_draw, pause = _DRAWINGS, _PAUSE
-        return pause
-
-    bpy.app.timers.register(advance, first_interval=_PAUSE, persistent=True)
+    play(walk(names, Camera(folder, arguments[2:])))
 
 
 main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])

@@ -27,7 +27,6 @@ from __future__ import annotations
 
 import sys
 import time
-import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,23 +37,10 @@ sys.path.insert(0, str(ROOT / "tools"))
 
 from screen import choose_tab, picture, scroll_sidebar, set_scene, view  # noqa: E402 - no script's folder is on the path
 from source_extension import load_extension  # noqa: E402
-from window_events import key, press, running, until  # noqa: E402
+from window_events import check, key, play, press, running, until  # noqa: E402
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-_PAUSE = 1.0
-"""Seconds between two steps: enough for a window to be drawn, in software too."""
-
-
-class WalkthroughError(Exception):
-    """A step did not do what it should; the message says which."""
-
-
-def check(condition: object, message: str) -> None:
-    """Make sure that a step did what it should."""
-    if not condition:
-        raise WalkthroughError(message)
 
 
 def state() -> Any:  # noqa: ANN401 - a property group
@@ -176,20 +162,7 @@ def main(arguments: list[str]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     bpy.context.preferences.view.show_splash = False
     load_extension().register()
-    steps = walk(folder, arguments[1:])
-
-    def advance() -> float | None:
-        try:
-            pause = next(steps)
-        except StopIteration:
-            bpy.ops.wm.quit_blender()
-            return None
-        except Exception:  # noqa: BLE001 - whatever it is, nobody sits before this window
-            traceback.print_exc()
-            sys.exit(1)
-        return _PAUSE if pause is None else pause
-
-    bpy.app.timers.register(advance, first_interval=_PAUSE, persistent=True)
+    play(walk(folder, arguments[1:]))
 
 
 main(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
