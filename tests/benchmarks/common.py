@@ -33,6 +33,14 @@ def known(path, suffix=""):
     return np.loadtxt(path.parent / "corres" / f"{path.stem}{suffix}.vts", dtype=int) - 1
 
 
+def interpolated(mesh, distances, points):
+    """Interpolate distances over sqrt(area) at the corners of points, (..., k, 3), as of straight lines, (..., k)."""
+    a, b, c = mesh.vertices[points.corners].transpose(1, 0, 2)
+    sides = np.stack([np.square(q - p).sum(axis=1) for p, q in ((a, b), (a, c), (b, c))], axis=1)
+    inside = (np.square(distances) * points.barycentric).sum(axis=-1)
+    return np.sqrt(np.maximum(inside - squared_offsets(points.barycentric, sides) / mesh.area, 0))
+
+
 def timed(function):
     """Call a function: what it returns, and the seconds of processor time."""
     start = time.process_time()
@@ -95,12 +103,7 @@ class Truth:
 
         `points` lie anywhere on a target of one part.
         """
-        mesh, corners = self._shape.mesh, points.corners
-        a, b, c = mesh.vertices[corners].transpose(1, 0, 2)
-        sides = np.stack([np.square(q - p).sum(axis=1) for p, q in ((a, b), (a, c), (b, c))], axis=1)
-        squares = np.square(self._rows[self._number[..., None], corners])
-        inside = (squares * points.barycentric).sum(axis=-1)
-        return np.sqrt(np.maximum(inside - squared_offsets(points.barycentric, sides) / self._shape.scale**2, 0))
+        return interpolated(self._shape.mesh, self._rows[self._number[..., None], points.corners], points)
 
 
 def data_pairs(folder, names):

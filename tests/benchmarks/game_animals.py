@@ -29,7 +29,7 @@ from engine import HierMatchError, MatchSettings, TriangleMesh, match
 from engine.geometry.geodesics import GeodesicSolver
 from tests.benchmarks.common import each_in_its_process
 from tests.benchmarks.game_models import Archive
-from tests.benchmarks.remeshed import Remeshed, compared, remeshed, said
+from tests.benchmarks.remeshed import Remeshed, compared, remeshed, said, unlike_poses
 from tests.shapes import rotation, subdivided
 
 # Model: how the names of its animations start, and its kind.  All look along -z at rest, but the sheep.
@@ -85,7 +85,7 @@ class Animal(Remeshed):
 
 @cache
 def poses(archive, name):
-    """Vertices of up to five poses, the most usual first, then each as far as can be from those before."""
+    """Vertices of up to five poses that are unlike."""
     model = archive.model(name)
     animations = archive.animations(name, LONG[name]) if name in LONG else archive.animations(ANIMALS[name][0])
     frames = [archive.frames(a, len(model.bones), FRAMES) for a in animations]
@@ -96,13 +96,7 @@ def poses(archive, name):
     ]
     if not found:
         return [model.vertices]
-    some = np.random.default_rng(0).permutation(len(model.vertices))[:60]
-    distances = np.array([np.linalg.norm(p[some, None] - p[some], axis=2).ravel() for p in found])
-    chosen = [int(np.linalg.norm(distances - np.median(distances, axis=0), axis=1).argmin())]
-    while len(chosen) < min(POSES, len(found)):
-        apart = np.linalg.norm(distances[:, None] - distances[chosen], axis=2).min(axis=1)
-        chosen.append(int(apart.argmax()))
-    return [found[i] for i in chosen]
+    return unlike_poses(np.array(found), POSES, 60)
 
 
 def ends(vertices, *, backwards):

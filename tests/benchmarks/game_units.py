@@ -22,7 +22,7 @@ import numpy as np
 
 from tests.benchmarks.common import each_in_its_process
 from tests.benchmarks.g3d_models import areas, largest_part, read_unit
-from tests.benchmarks.remeshed import compared, remeshed
+from tests.benchmarks.remeshed import compared, remeshed, unlike_poses
 from tests.shapes import rotation, subdivided
 
 POSES, LEAST_POSES, MOST = 3, 5, 0.7
@@ -46,16 +46,9 @@ def bodies(data, only):
 
 
 def poses(places, triangles):
-    """Take three poses (n, 3), the most usual first, then each as far as can be from those before."""
+    """Take three poses (n, 3) that are unlike, of about the same size."""
     sizes = np.array([areas(frame, triangles).sum() for frame in places])
-    places = places[np.abs(sizes / np.median(sizes) - 1) < 0.15]
-    some = np.random.default_rng(0).permutation(places.shape[1])[:50]
-    distances = np.linalg.norm(places[:, some, None] - places[:, None, some], axis=3).reshape(len(places), -1)
-    chosen = [int(np.linalg.norm(distances - np.median(distances, axis=0), axis=1).argmin())]
-    while len(chosen) < POSES:
-        apart = np.linalg.norm(distances[:, None] - distances[chosen], axis=2).min(axis=1)
-        chosen.append(int(apart.argmax()))
-    return places[chosen]
+    return unlike_poses(places[np.abs(sizes / np.median(sizes) - 1) < 0.15], POSES, 50)
 
 
 def meshed_anew(vertices, triangles, name, number):

@@ -18,8 +18,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 
 from engine import TriangleMesh
-from engine.shapes.surface_distances import squared_offsets
-from tests.benchmarks.common import known, read_off
+from tests.benchmarks.common import interpolated, known, read_off
 
 SAMPLES = 400
 
@@ -81,13 +80,8 @@ class KnownShape:
     def point_errors(self, points):
         """Errors x 100 of points (k,) anywhere on the surface as the images of the chosen places, (k,)."""
         rows = self._rows[0]
-        a, b, c = self.mesh.vertices[points.corners].transpose(1, 0, 2)
-        sides = np.stack([np.square(q - p).sum(axis=1) for p, q in ((a, b), (a, c), (b, c))], axis=1)
-        squares = np.square(rows[np.arange(len(rows))[:, None], points.corners].astype(float))
-        inside = (squares * points.barycentric).sum(axis=1) - squared_offsets(
-            points.barycentric, sides
-        ) / self.mesh.area
-        return 100 * np.sqrt(np.maximum(inside, 0))
+        at_corners = rows[np.arange(len(rows))[:, None], points.corners].astype(float)
+        return 100 * interpolated(self.mesh, at_corners, points)
 
     @cached_property
     def _regions(self):

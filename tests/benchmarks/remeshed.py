@@ -31,6 +31,20 @@ def remeshed(vertices, triangles, name, count):
     return Remeshed(mesh, cKDTree(vertices).query(mesh.vertices)[1], cKDTree(mesh.vertices).query(vertices)[1])
 
 
+def unlike_poses(places, count, points):
+    """Take so many poses of some (f, n, 3): the most usual first, then each as far as can be from those before.
+
+    They are compared by the distances between so many of their vertices.
+    """
+    some = np.random.default_rng(0).permutation(places.shape[1])[:points]
+    distances = np.linalg.norm(places[:, some, None] - places[:, None, some], axis=3).reshape(len(places), -1)
+    chosen = [int(np.linalg.norm(distances - np.median(distances, axis=0), axis=1).argmin())]
+    while len(chosen) < min(count, len(places)):
+        apart = np.linalg.norm(distances[:, None] - distances[chosen], axis=2).min(axis=1)
+        chosen.append(int(apart.argmax()))
+    return places[chosen]
+
+
 def errors(source, target, found):
     """Distances x 100 of images of some vertices from where they belong, over the square root of the area, (k,)."""
     chosen = np.random.default_rng(0).permutation(source.mesh.vertex_count)[:PLACES]
