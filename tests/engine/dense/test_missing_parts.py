@@ -97,6 +97,19 @@ def test_a_small_part_that_is_cut_off(share, size):
     assert not known[angles < np.arccos(1 - 2 * share) - 3 * spacing].any()
 
 
+@pytest.mark.parametrize("size", [1e-3, 1e3])
+def test_the_unit_of_length_does_not_matter(ball, size):
+    rest, _ = without_cap(ball, 0.2)
+    there, back = nearest_on(rest, ball.vertices), nearest_on(ball, rest.vertices)
+    known = with_partner(ball, rest, there, back)
+    sized = [TriangleMesh(size * mesh.vertices, mesh.triangles) for mesh in (ball, rest)]
+    points = [
+        SurfacePoints.from_barycentric(mesh, found.triangles, found.barycentric)
+        for mesh, found in zip(sized[::-1], (there, back), strict=True)
+    ]
+    np.testing.assert_array_equal(with_partner(*sized, *points), known)
+
+
 @pytest.mark.parametrize("parts", [4, 10, 30, 46])
 def test_it_does_not_depend_on_how_finely_the_other_is_meshed(ball, parts):
     """However few vertices the other sphere has, nothing is missing; without a fifth of it, that is."""
