@@ -265,6 +265,10 @@ class TestSameNames:
     def test_each_is_in_the_view_layer(self, both, pair):
         check(pair)
         check_pair(bpy.context.view_layer, both[1], pair[1], writes=(False, True))
+        bpy.context.collection.objects.unlink(both[1])
+        check(pair)
+        with pytest.raises(ObjectError, match="not in the view layer"):
+            check_pair(bpy.context.view_layer, both[1], pair[1], writes=(False, True))
 
     def test_each_is_found_again_by_its_name(self, both):
         layer = bpy.context.view_layer

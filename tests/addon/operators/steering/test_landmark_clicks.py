@@ -66,11 +66,12 @@ def test_a_mesh_may_be_renamed_between_two_clicks(clicks, pair):
     assert '"Renamed"' in clicks._prompt()  # noqa: SLF001
 
 
-@pytest.mark.parametrize("pending", [("Renamed", 3), ("Source", 10**6)])
-def test_a_place_that_is_gone_is_not_drawn(pair, pending):
+@pytest.mark.parametrize(("pending", "count"), [(("Source", 3), 1), (("Renamed", 3), 0), (("Source", 10**6), 0)])
+def test_a_place_is_drawn_unless_it_is_gone(pair, pending, count):
+    assert pair[0].name == "Source"
     bpy.context.scene.hiermatch_steering.show_overlay = True
-    overlay_io.read_drawing(bpy.context.scene, bpy.context.evaluated_depsgraph_get(), pending)
-    assert pair
+    drawn = overlay_io.read_drawing(bpy.context.scene, bpy.context.evaluated_depsgraph_get(), pending)
+    assert len(drawn.points) == count
 
 
 def test_undo_and_redo_are_counted(clicks, pair):
