@@ -20,9 +20,3 @@ def start_from(x, y, vertices_x, vertices_y, origin="given"):
     """Vertices that correspond, as a start."""
     rows = x.solver.distances(np.asarray(vertices_x)) / x.scale
     return SparseStart(rows, y.solver.distances(np.asarray(vertices_y)) / y.scale, origin)
-
-
-def returned(value):
-    """Steps that take none."""
-    return value
-    yield

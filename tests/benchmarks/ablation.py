@@ -33,6 +33,7 @@ from tests.benchmarks.smooth_bodies import pair_of_bodies
 from tests.bodies import fish
 from tests.messes import partly_turned, without_faces
 from tests.shapes import capsule_surface, creature, permuted, rotation
+from tests.steps import returned
 
 WRONG = 0.03
 """Share of places that are brought to another part of the body from which on a pair counts as wrong."""
@@ -57,12 +58,6 @@ class Case:
     bodies: tuple
     meshes: tuple
     wholes: tuple
-
-
-def returned(value):
-    """A computation in steps that is over at once."""
-    return value
-    yield
 
 
 def nothing(*_given, **_options):

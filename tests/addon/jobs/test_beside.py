@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import signal
 import time
-from pathlib import Path
 
 import bpy
 import numpy as np
@@ -21,6 +20,7 @@ from hiermatch.hiermatch_addon.transfers.options.retarget import chosen_transfer
 
 from tests.addon.rigs import add_rigged_pair
 from tests.addon.scenes import DENSE, MAP_ATTRIBUTES, QUICK, add_pair, mesh_snapshot, snapshot, values_of
+from tests.processes import is_gone
 
 pytestmark = pytest.mark.computes_anew
 
@@ -33,15 +33,6 @@ def two_processes():
     yield
     close_helpers()
     use_processes()
-
-
-def is_gone(pid):
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    status = Path(f"/proc/{pid}/stat")
-    return status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z"
 
 
 def advance(job, until=lambda: False):

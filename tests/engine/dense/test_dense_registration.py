@@ -22,8 +22,9 @@ from engine.registration.elastic import ElasticSurface
 from engine.registration.registration import SOFT
 from engine.shapes.landmarks import LandmarkPlaces, Landmarks
 from tests.bodies import mirrored_body
-from tests.registered import returned, shape, start_from
+from tests.registered import shape, start_from
 from tests.shapes import icosphere, rotation
+from tests.steps import followed, returned
 
 
 def errors(points, triangles, own, other, area):
@@ -37,16 +38,6 @@ def bodies():
     """A symmetric body, and one like it in another pose and triangulation."""
     first, second = mirrored_body(0.0, 9), mirrored_body(0.8, 9, seed=1)
     return shape(*first[:2]), shape(*second[:2]), first[2], second[2]
-
-
-def followed(steps):
-    """What a computation yields on the way, and returns."""
-    reports = []
-    while True:
-        try:
-            reports.append(next(steps))
-        except StopIteration as stop:
-            return reports, stop.value
 
 
 @pytest.fixture(scope="module")

@@ -26,6 +26,7 @@ from engine.registration.elastic import ElasticSurface
 from tests.bodies import mirrored_body
 from tests.messes import together
 from tests.shapes import creature, icosphere, permuted, rotation, subdivided
+from tests.steps import followed
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
 
@@ -55,12 +56,7 @@ def bodies():
 @pytest.fixture(scope="module")
 def watched(bodies):
     """What a match yields on the way, and returns."""
-    steps, reports = match_steps(*bodies[:2], QUICK), []
-    while True:
-        try:
-            reports.append(next(steps))
-        except StopIteration as stop:
-            return reports, stop.value
+    return followed(match_steps(*bodies[:2], QUICK))
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,8 @@ from engine.dense.registered_hypotheses import Follower
 from engine.registration.positional_constraints import Ties
 from engine.registration.registration import SOFT, register_steps
 from tests.bodies import fish
-from tests.registered import returned, shape, start_from
+from tests.registered import shape, start_from
+from tests.steps import returned
 
 
 @pytest.fixture(scope="module")

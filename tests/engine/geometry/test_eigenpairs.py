@@ -13,6 +13,7 @@ from engine import HierMatchError, TriangleMesh
 from engine.geometry.eigenpairs import eigenpairs, eigenpairs_steps
 from engine.geometry.laplacian import LaplaceBeltrami, laplace_beltrami
 from tests.shapes import compacted, creature, cylinder, icosphere, irregular, permuted, plane, rotation
+from tests.steps import followed
 
 
 def rectangle(count=40, width=1.0, height=1.0):
@@ -229,23 +230,9 @@ def test_any_soup(seed):
 
 def test_steps():
     operator = laplace_beltrami(TriangleMesh(*icosphere(12)))
-    steps = eigenpairs_steps(operator, 30)
-    fractions = []
-    while True:
-        try:
-            fractions.append(next(steps).fraction)
-        except StopIteration as stop:
-            spectrum = stop.value
-            break
+    reports, spectrum = followed(eigenpairs_steps(operator, 30))
+    fractions = [report.fraction for report in reports]
     assert len(fractions) > 8
     assert (np.diff(fractions) >= 0).all()
     assert max(fractions) <= 1
     np.testing.assert_array_equal(spectrum.values, eigenpairs(operator, 30).values)
-
-
-def test_it_can_be_stopped():
-    steps = eigenpairs_steps(TriangleMesh(*icosphere(10)), 30)
-    next(steps)
-    steps.close()
-    with pytest.raises(StopIteration):
-        next(steps)

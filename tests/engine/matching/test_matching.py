@@ -21,6 +21,7 @@ from engine import (
 from engine.matching.shape_matching import MatchTask, matched_steps
 from engine.runtime.progress import run
 from tests.shapes import creature, icosphere, permuted, rotation
+from tests.steps import followed
 
 QUICK = MatchSettings(points=40, samples=200, dense=False)
 
@@ -185,29 +186,13 @@ def test_wrong_coarse_matches_are_repaired_on_the_way(bodies):
     assert last.mean() <= first.mean()
 
 
-def test_progress_rises_and_the_work_can_be_dropped(bodies):
-    fractions = []
-    steps = match_steps(bodies[0], bodies[1], replace(QUICK, points=12, samples=60))
-    result = run(_watched(steps, fractions))
+def test_progress_rises(bodies):
+    reports, result = followed(match_steps(bodies[0], bodies[1], replace(QUICK, points=12, samples=60)))
+    fractions = [report.fraction for report in reports]
     assert len(result.source_points) == 12
     assert fractions == sorted(fractions)
     assert fractions[0] >= 0
     assert fractions[-1] == 1
-    dropped = match_steps(bodies[0], bodies[1], QUICK)
-    next(dropped)
-    dropped.close()
-    with pytest.raises(StopIteration):
-        next(dropped)
-
-
-def _watched(steps, fractions):
-    while True:
-        try:
-            progress = next(steps)
-        except StopIteration as stop:
-            return stop.value
-        fractions.append(progress.fraction)
-        yield progress
 
 
 def test_only_the_largest_part_is_matched_and_the_result_says_so(bodies, result):

@@ -14,6 +14,7 @@ from engine.runtime.progress import run
 from engine.shapes.shape import Shape
 from tests.bodies import mirrored_body
 from tests.shapes import creature, icosphere, permuted, plane, rotation
+from tests.steps import followed
 
 QUICK = MatchSettings(points=40, samples=200)
 
@@ -26,8 +27,14 @@ def posed_body():
 
 
 @pytest.fixture(scope="module")
-def result(posed_body):
-    return find_symmetry(posed_body[0], QUICK)
+def watched(posed_body):
+    """What the computation yields on the way, and returns."""
+    return followed(find_symmetry_steps(posed_body[0], QUICK))
+
+
+@pytest.fixture(scope="module")
+def result(watched):
+    return watched[1]
 
 
 def mirror_errors(result, mesh, rest):
@@ -181,27 +188,11 @@ def test_only_the_largest_part_is_looked_at_and_the_result_says_so(posed_body, r
     assert "1 smaller part" in other.notes[0]
 
 
-def test_progress_rises_and_the_work_can_be_dropped(posed_body):
-    fractions = []
-    result = run(_watched(find_symmetry_steps(posed_body[0], QUICK), fractions))
-    assert len(result.source_points) == QUICK.points
+def test_progress_rises(watched):
+    fractions = [report.fraction for report in watched[0]]
+    assert len(watched[1].source_points) == QUICK.points
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1
-    dropped = find_symmetry_steps(posed_body[0], QUICK)
-    next(dropped)
-    dropped.close()
-    with pytest.raises(StopIteration):
-        next(dropped)
-
-
-def _watched(steps, fractions):
-    while True:
-        try:
-            progress = next(steps)
-        except StopIteration as stop:
-            return stop.value
-        fractions.append(progress.fraction)
-        yield progress
 
 
 def test_a_mesh_with_too_few_vertices_is_refused_in_words():

@@ -6,8 +6,8 @@ import pytest
 
 from engine import MatchSettings, TriangleMesh, symmetry_map
 from engine.matching.symmetry_map import symmetry_map_steps
-from engine.runtime.progress import run
 from tests.bodies import mirrored_body
+from tests.steps import followed
 
 QUICK = MatchSettings(points=40, samples=200)
 
@@ -19,8 +19,14 @@ def body():
 
 
 @pytest.fixture(scope="module")
-def mirrored(body):
-    return symmetry_map(body[0], QUICK)
+def watched(body):
+    """What the computation yields on the way, and returns."""
+    return followed(symmetry_map_steps(body[0], QUICK))
+
+
+@pytest.fixture(scope="module")
+def mirrored(watched):
+    return watched[1]
 
 
 def test_every_vertex_goes_to_its_mirror_image(body, mirrored):
@@ -44,20 +50,8 @@ def test_the_map_is_its_own_inverse(body, mirrored):
     np.testing.assert_allclose(mirrored.target_to_source.positions, mirrored.source_to_target.positions, atol=1e-12)
 
 
-def test_progress_rises(body):
-    fractions = []
-    steps = symmetry_map_steps(body[0], QUICK)
-
-    def watched():
-        while True:
-            try:
-                progress = next(steps)
-            except StopIteration as stop:
-                return stop.value
-            fractions.append(progress.fraction)
-            yield progress
-
-    run(watched())
+def test_progress_rises(watched):
+    fractions = [report.fraction for report in watched[0]]
     assert fractions == sorted(fractions)
     assert fractions[0] >= 0
     assert fractions[-1] <= 1

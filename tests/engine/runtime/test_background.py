@@ -2,7 +2,6 @@
 import os
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from engine.runtime.background import Background, called_steps
 from engine.runtime.errors import HierMatchError
 from engine.runtime.worker import Helper, call_background, close_helpers, use_processes
 from tests import shared_work
+from tests.processes import is_gone
 from tests.shapes import creature, icosphere
 
 PATIENCE = 60
@@ -39,16 +39,6 @@ def driven(steps, background):
                 return seen, stop.value
         if background.is_waiting:
             time.sleep(0.005)
-
-
-def is_gone(pid):
-    """Whether a process of ours has ended, and was waited for."""
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    status = Path(f"/proc/{pid}/stat")
-    return status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z"
 
 
 def test_it_is_done_by_another_process_which_tells_how_far_it_is_and_what_it_warns_of():

@@ -17,6 +17,7 @@ from engine.runtime.pipes import receive, send
 from engine.runtime.worker import call_helpers, close_helpers, present_helpers, search_threads, use_processes
 from engine.runtime.worker_main import READY
 from tests import shared_work
+from tests.processes import is_gone
 from tests.shapes import creature
 from tests.shared_work import Kept
 
@@ -49,16 +50,6 @@ def no_helpers():
     yield
     close_helpers()
     use_processes()
-
-
-def is_gone(pid):
-    """Whether a process has ended."""
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return True
-    status = Path(f"/proc/{pid}/stat")
-    return status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z"
 
 
 @pytest.mark.usefixtures("helper")

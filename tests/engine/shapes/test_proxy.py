@@ -25,6 +25,7 @@ from tests.shapes import (
     subdivided,
     torus,
 )
+from tests.steps import followed
 
 
 def characteristic(mesh):
@@ -294,14 +295,8 @@ def test_small_meshes_stand_for_themselves():
 
 
 def test_proxies_are_reproducible_and_report_progress(body, body_proxy):
-    fractions = []
-    steps = proxy_steps(body, 1000)
-    while True:
-        try:
-            fractions.append(next(steps).fraction)
-        except StopIteration as stop:
-            again = stop.value
-            break
+    reports, again = followed(proxy_steps(body, 1000))
+    fractions = [report.fraction for report in reports]
     np.testing.assert_array_equal(again.mesh.triangles, body_proxy.mesh.triangles)
     np.testing.assert_array_equal(again.mesh.vertices, body_proxy.mesh.vertices)
     np.testing.assert_array_equal(again.vertices, body_proxy.vertices)

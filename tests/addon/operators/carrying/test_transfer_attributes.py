@@ -7,7 +7,6 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.engine.runtime.progress import run
-from hiermatch.hiermatch_addon.operators.carrying.transfer_attributes import HIERMATCH_OT_transfer_attributes
 from hiermatch.hiermatch_addon.scene.attribute_io import (
     AttributeLayout,
     attribute_layouts,
@@ -24,17 +23,6 @@ from hiermatch.hiermatch_addon.transfers.options.attributes import AttributeSett
 
 from tests.addon.rigs import true_passage
 from tests.addon.scenes import add_blob, mesh_snapshot
-
-
-@pytest.fixture(autouse=True)
-def operator(empty_file):
-    assert empty_file
-    missing = not hasattr(bpy.types, HIERMATCH_OT_transfer_attributes.__name__)
-    if missing:
-        bpy.utils.register_class(HIERMATCH_OT_transfer_attributes)
-    yield
-    if missing:
-        bpy.utils.unregister_class(HIERMATCH_OT_transfer_attributes)
 
 
 @pytest.fixture

@@ -8,22 +8,10 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
 from hiermatch.hiermatch_addon.scene.attribute_io import read_attribute, read_polygons, read_seams
 from hiermatch.hiermatch_addon.transfers import uvs
 
 from tests.addon.scenes import mesh_snapshot
-
-
-@pytest.fixture(autouse=True)
-def operator(empty_file):
-    assert empty_file
-    missing = not hasattr(bpy.types, HIERMATCH_OT_transfer_uvs.__name__)
-    if missing:
-        bpy.utils.register_class(HIERMATCH_OT_transfer_uvs)
-    yield
-    if missing:
-        bpy.utils.unregister_class(HIERMATCH_OT_transfer_uvs)
 
 
 @pytest.fixture

@@ -11,17 +11,6 @@ from hiermatch.hiermatch_addon.scene.deform_layer import read_weights, write_wei
 from scipy.sparse import csr_array
 
 
-@pytest.fixture(autouse=True)
-def operator(empty_file):
-    assert empty_file
-    missing = not hasattr(bpy.types, HIERMATCH_OT_transfer_weights.__name__)
-    if missing:
-        bpy.utils.register_class(HIERMATCH_OT_transfer_weights)
-    yield
-    if missing:
-        bpy.utils.unregister_class(HIERMATCH_OT_transfer_weights)
-
-
 def heights(obj):
     """From 0 at the bottom of an object to 1 at its top, (n,)."""
     z = np.array([vertex.co.z for vertex in obj.data.vertices])

@@ -14,6 +14,7 @@ from engine.runtime.progress import Progress, run
 from tests.bodies import octopus
 from tests.domains import domain
 from tests.shapes import creature, rotation
+from tests.steps import followed
 
 
 @pytest.fixture(scope="module")
@@ -40,13 +41,7 @@ def test_matchings_may_be_looked_for_beside_something_else(pair):
         yield Progress(0.5, "Something else")
         return "done"
 
-    reports = []
-    steps = RoughSearch(pair, (1,)).beside_steps(own())
-    try:
-        while True:
-            reports.append(next(steps))
-    except StopIteration as stop:
-        result, search = stop.value
+    reports, (result, search) = followed(RoughSearch(pair, (1,)).beside_steps(own()))
     assert result == "done"
     fractions = [report.fraction for report in reports]
     assert fractions == sorted(fractions)

@@ -8,6 +8,7 @@ from engine import Progress, Shape, SurfacePoints, TriangleMesh, run
 from engine.hierarchical.compared.stress_descent import Stress, joined, settle_steps
 from engine.shapes.surface_distances import EmbeddedDistances, SurfaceDistances, symmetric_roots
 from tests.shapes import creature, plane, plane_with_hole
+from tests.steps import followed
 
 
 def pairwise(positions):
@@ -180,15 +181,8 @@ def test_it_reports_progress_and_repeats_itself(patch):
     random = np.random.default_rng(7)
     wanted = pairwise(random.uniform(0, 1, (8, 2)))
     start = SurfacePoints.at_vertices(patch.mesh, np.arange(0, 320, 40))
-    reports, results = [], []
-    for _ in range(2):
-        steps = settle_steps(SurfaceDistances(patch), start, Stress(wanted))
-        while True:
-            try:
-                reports.append(next(steps))
-            except StopIteration as stop:
-                results.append(stop.value)
-                break
+    reports, result = followed(settle_steps(SurfaceDistances(patch), start, Stress(wanted)))
+    again = run(settle_steps(SurfaceDistances(patch), start, Stress(wanted)))
     assert all(isinstance(report, Progress) and 0 <= report.fraction <= 1 for report in reports)
-    np.testing.assert_array_equal(results[0].points.barycentric, results[1].points.barycentric)
-    assert results[0].stress == results[1].stress
+    np.testing.assert_array_equal(result.points.barycentric, again.points.barycentric)
+    assert result.stress == again.stress
