@@ -20,8 +20,13 @@ os.environ.setdefault("HIERMATCH_PROCESSES", "1")
 import bpy
 import numpy as np
 
-from tests.people import HANGING, at_rest_in, person, renamed
 from tools.source_extension import registered_extension
+
+registered_extension()
+
+from tests.addon.characters import add_skeleton  # noqa: E402
+from tests.addon.rigs import add_mesh, add_weights  # noqa: E402
+from tests.people import HANGING, at_rest_in, person, renamed  # noqa: E402
 
 ITEMS = {
     "Shirt": (0.01, lambda x, z: (z > 0.95) & (z < 1.5) & (np.abs(x) < 0.6)),
@@ -34,33 +39,16 @@ ITEMS = {
 
 
 def add_body(name, mesh, rig):
-    """Add a person with its rig."""
-    data = bpy.data.armatures.new(name)
-    armature = bpy.data.objects.new(f"{name} Rig", data)
-    bpy.context.scene.collection.objects.link(armature)
-    bpy.context.view_layer.objects.active = armature
-    bpy.ops.object.mode_set(mode="EDIT")
-    made = []
-    for bone, head, tail in zip(rig.names, rig.skeleton.heads, rig.skeleton.tails, strict=True):
-        made.append(data.edit_bones.new(bone))
-        made[-1].head, made[-1].tail = head, tail
-    for bone, parent in zip(made, rig.skeleton.parents, strict=True):
-        bone.parent = made[int(parent)] if parent >= 0 else None
-    bpy.ops.object.mode_set(mode="OBJECT")
-    return armature, add_mesh(name, mesh.vertices, mesh.triangles, armature, (rig.names, rig.weights))
+    """Add a person with its rig, and return its armature."""
+    armature = add_skeleton(f"{name} Rig", rig)
+    add_part(name, (mesh.vertices, mesh.triangles), armature, rig.names, rig.weights)
+    return armature
 
 
-def add_mesh(name, vertices, triangles, armature, weights):
+def add_part(name, surface, armature, names, weights):
     """Add a mesh that an armature moves."""
-    data = bpy.data.meshes.new(name)
-    data.from_pydata(vertices.tolist(), [], triangles.tolist())
-    obj = bpy.data.objects.new(name, data)
-    bpy.context.scene.collection.objects.link(obj)
-    names, values = weights
-    for bone, column in zip(names, values.toarray().T, strict=True):
-        group = obj.vertex_groups.new(name=bone)
-        for vertex in np.flatnonzero(column > 0):
-            group.add([int(vertex)], float(column[vertex]), "REPLACE")
+    obj = add_mesh(name, *surface)
+    add_weights(obj, weights, names)
     obj.modifiers.new("Armature", "ARMATURE").object = armature
     return obj
 
@@ -75,7 +63,7 @@ def add_item(name, resolution, armature, wanted):
         used, triangles = np.unique(body.mesh.triangles[chosen], return_inverse=True)
         resolution *= np.sqrt(wanted / len(used))
     places = (body.mesh.vertices + away * body.mesh.vertex_normals)[used]
-    return add_mesh(name, places, triangles.reshape(-1, 3), armature, (body.rig.names, body.rig.weights[used]))
+    return add_part(name, (places, triangles.reshape(-1, 3)), armature, body.rig.names, body.rig.weights[used])
 
 
 def main():
@@ -84,11 +72,10 @@ def main():
     parser.add_argument("--resolution", type=int, default=40, help="of the bodies (default %(default)s)")
     parser.add_argument("--profile", type=int, default=0, help="functions to list")
     options = parser.parse_args()
-    registered_extension()
     bpy.ops.wm.read_homefile(use_empty=True)
     source = person(options.resolution)
     target = at_rest_in(person(options.resolution, turn=0.3, legs=1.1, arms=0.9, girth=1.2), HANGING)
-    armature, _ = add_body("Source", source.mesh, source.rig)
+    armature = add_body("Source", source.mesh, source.rig)
     add_body("Target", target.mesh, renamed(target.rig))
     each = options.vertices / len(ITEMS)
     made = [add_item(name, options.resolution, armature, each) for name in ITEMS]

@@ -115,6 +115,16 @@ def test_partners_are_of_like_shape():
     assert pairs_of([ball], [needle]) == []
 
 
+@pytest.mark.parametrize(("layers", "paired"), [(3, True), (6, False)])
+def test_partners_are_of_like_area(layers, paired):
+    """A ball, and one of layers: of the same size and shape."""
+    vertices, triangles = icosphere(4, 0.2)
+    places = [(1 + 0.001 * number) * vertices + PLACES[0] for number in range(layers)]
+    corners = [triangles + number * len(vertices) for number in range(layers)]
+    layered = TriangleMesh(np.concatenate(places), np.concatenate(corners))
+    assert len(pairs_of([TriangleMesh(places[0], triangles)], [layered])) == paired
+
+
 def test_as_many_pairs_as_possible_are_made():
     # The second could go with either; the first only with what is nearer to the second.
     here = [egg(np.array([1.2, 0.0, 0]), 0.1), egg(np.array([1.2, 0.25, 0]), 0.1)]

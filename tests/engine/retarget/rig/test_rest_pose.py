@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_array
 
 from engine import FittedRig, RigError, Skeleton, SurfaceMap, TriangleMesh
 from engine.retarget.rig.bone_fit import skinned
 from engine.retarget.rig.joint_placement import place_joints
-from engine.retarget.rig.rest_pose import bend_angles, is_posed, rest_pose, unposed
+from engine.retarget.rig.rest_pose import RestPose, bend_angles, is_posed, rest_pose, unposed
 from tests.shapes import creature, rotation
 from tests.skeletons import CONTROLS, creature_bones, creature_weights
 
@@ -56,6 +57,15 @@ def test_what_skinning_posed_comes_back_to_rest(body):
     np.testing.assert_allclose(unposed(rig.posed, rig.weights, rest), body.vertices, atol=1e-9)
     np.testing.assert_allclose(moving(rest.heads), moving(HEADS), atol=1e-9)
     np.testing.assert_allclose(moving(rest.turns), moving(rig.linear).transpose(0, 2, 1), atol=1e-9)
+
+
+def test_where_bones_turn_opposite_ways_a_vertex_goes_between_its_images():
+    posed, heads = np.array([[0.0, 0, 1], [1.0, 2, 1]]), np.array([[0.5, 0, 0], [1.0, 0, 0]])
+    turns = np.stack([np.eye(3), rotation([0, 0, 1], np.pi)])
+    vertex = np.array([[0.3, 1.0, 1.5]])
+    found = unposed(vertex, csr_array([[0.5, 0.5]]), RestPose(posed_heads=posed, heads=heads, turns=turns))
+    images = heads + np.einsum("bij,bj->bi", turns, vertex - posed)
+    np.testing.assert_allclose(found, [images.mean(axis=0)], atol=1e-12)
 
 
 def test_lengths_and_place_are_the_targets_own(body):
