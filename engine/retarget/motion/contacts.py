@@ -123,15 +123,15 @@ def grounded_lifts(heights: Floats, wanted: Floats, level: Floats, length: float
 
 
 def _faded(values: Floats, held: Bools, span: int) -> Floats:
-    """Let values (f, d) fade smoothly where they are not held, over so many poses."""
-    result, frames = values.copy(), np.arange(len(values))
-    places = np.flatnonzero(held)
+    """Let values (f, d) fade smoothly where they are not held, over so many poses, or go over into the next ones."""
+    places, frames = np.flatnonzero(held), np.arange(len(values))
     if not len(places):
-        return result
-    for sides in (
-        places[np.maximum(np.searchsorted(places, frames, "right") - 1, 0)],
-        places[np.minimum(np.searchsorted(places, frames), len(places) - 1)],
-    ):
-        share = ~held * (1 - eased(np.abs(frames - sides) / (span + 1)))
+        return values
+    result, total = np.zeros_like(values), np.zeros(len(values))
+    for numbers in (np.searchsorted(places, frames, "right") - 1, np.searchsorted(places, frames)):
+        inside = numbers.clip(0, len(places) - 1)
+        sides = places[inside]
+        share = (numbers == inside) * (1 - eased(np.abs(frames - sides) / (span + 1)))
         result += share[:, None] * values[sides]
-    return result
+        total += share
+    return result / np.maximum(total, 1)[:, None]

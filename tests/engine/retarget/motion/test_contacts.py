@@ -44,6 +44,18 @@ def test_a_foot_that_slides_is_held_while_it_stands_and_let_go_smoothly():
     assert np.abs(shifts[:28]).max() < 0.035  # to the middle of where it was
 
 
+def test_a_shift_fades_before_a_foot_stands_and_after_and_is_never_more_than_while_it_does():
+    points = np.zeros((50, 2, 3))
+    touching = np.zeros((50, 2), bool)
+    touching[15:22] = touching[25:35] = True
+    shifts = held_shifts(points, touching, points @ UP + 0.05, UP, RATE) @ UP
+    np.testing.assert_allclose(shifts[15:35], 0.05)
+    assert (np.diff(shifts[:16]) >= 0).all()
+    assert (np.diff(shifts[34:]) <= 0).all()
+    assert np.abs(np.diff(shifts)).max() < 0.02
+    assert shifts[0] == shifts[-1] == 0
+
+
 def test_the_height_is_the_one_wanted():
     points = stepping()
     touching = contacts_of(points, UP, 0.9, RATE)
