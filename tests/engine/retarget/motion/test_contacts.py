@@ -25,6 +25,12 @@ def test_standing_is_low_and_slow_and_swinging_is_not():
     assert not touching[33:42].any()
 
 
+def test_a_foot_may_have_stood_before_the_motion_begins_and_after_it_ends():
+    assert contacts_of(stepping()[:48], UP, 0.9, 100)[-2:].all()
+    assert contacts_of(stepping()[27:], UP, 0.9, 100)[:2].all()
+    assert not contacts_of(stepping()[31:44], UP, 0.9, 100).any()
+
+
 def test_units_and_the_frame_rate_do_not_matter():
     points = stepping()
     expected = contacts_of(points, UP, 0.9, RATE)
@@ -84,6 +90,14 @@ def test_a_foot_near_the_ground_is_brought_to_its_height_without_standing():
     assert np.isclose(lifts[0], -0.05)
     assert np.isclose(lifts[1], 0.03)  # neither point is below the ground
     assert lifts[2] == 0  # high above the ground it is left alone
+
+
+def test_it_does_not_matter_where_the_ground_is():
+    random = np.random.default_rng(1)
+    wanted, heights = random.uniform(-0.1, 0.4, (50, 2)), random.uniform(-0.4, 0.4, (50, 2))
+    level = np.array([0.0, 0.02])
+    there = grounded_lifts(heights + 7, wanted + 7, level + 7, 1.0)
+    np.testing.assert_allclose(there, grounded_lifts(heights, wanted, level, 1.0), atol=1e-12)
 
 
 def test_no_point_of_a_foot_goes_through_the_ground_unless_the_source_s_does():

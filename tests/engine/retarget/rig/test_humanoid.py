@@ -62,6 +62,38 @@ def test_bones_in_several_pieces(someone):
     assert {"chest", "left_lower_leg", "right_hand"} <= set(found)
 
 
+def test_the_order_of_bones_does_not_matter(someone):
+    tree = someone.rig.skeleton
+    order = np.arange(len(tree))[::-1]
+    parents = np.where(tree.parents < 0, -1, len(tree) - 1 - tree.parents)[order]
+    found = humanoid_bones(Skeleton(parents, tree.heads[order], tree.tails[order]), np.ones(len(tree), bool), UP)
+    expected = humanoid_bones(tree, np.ones(len(tree), bool), UP)
+    assert {what: order[bone] for what, bone in found.items()} == expected
+
+
+def test_bones_of_the_palm_are_no_fingers(someone):
+    """Such as MakeHuman's: one for each finger but the thumb, from near the wrist; the fingers have three more."""
+    tree, names = someone.rig.skeleton, list(someone.rig.names)
+    parents, heads, tails = tree.parents.tolist(), tree.heads.tolist(), tree.tails.tolist()
+    for side in "LR":
+        wrist = tree.heads[names.index(f"hand.{side}")]
+        for finger in ("index", "middle"):
+            first, second = (names.index(f"{finger}{number}.{side}") for number in (1, 2))
+            parents.append(parents[first])
+            parents[first] = len(heads)
+            heads.append(wrist + 0.3 * (tree.heads[first] - wrist))
+            tails.append(tree.heads[first])
+            parents.append(second)
+            heads.append(tree.tails[second])
+            tails.append(2 * tree.tails[second] - tree.heads[second])
+    skeleton = Skeleton(np.array(parents), np.array(heads), np.array(tails))
+    found = humanoid_bones(skeleton, np.ones(len(skeleton), bool), UP)
+    for side, letter in (("left", "L"), ("right", "R")):
+        for finger in ("index", "middle"):
+            assert found[f"{side}_{finger}_1"] == names.index(f"{finger}1.{letter}")
+        assert found[f"{side}_thumb_1"] == names.index(f"thumb1.{letter}")
+
+
 def test_another_axis_may_be_up(someone):
     lying = rotation(np.array([1.0, 0, 0]), -np.pi / 2)
     tree = someone.rig.skeleton

@@ -39,6 +39,9 @@ def test_a_part_moves_as_one_if_its_counterpart_does():
     np.testing.assert_allclose(result[eye], np.tile([0.25, 0.75], (eye.sum(), 1)))
     np.testing.assert_array_equal(result[~eye], plain.toarray()[~eye])
     assert abs(plain.toarray()[stray] - [0.25, 0.75]).max() > 0.1
+    for free in (np.array([True, True]), np.array([False, False])):
+        freed = with_rigid_parts(plain, *parts, to_source, free=free).toarray()
+        np.testing.assert_array_equal(freed, plain.toarray() if free.all() else result)
 
 
 def test_a_part_bends_if_its_counterpart_does_and_one_part_is_none_beside_others():

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 from engine import RigError, TriangleMesh
 from engine.mesh.connectivity.welded_parts import WeldedParts
 from engine.retarget.weights.skin_weights import normalised, row_sums
-from engine.retarget.weights.weight_filling import filled
+from engine.retarget.weights.weight_filling import continued, filled
 from tests.engine.mesh.connectivity.test_welded_parts import together
 from tests.shapes import cylinder, icosphere, permuted, plane, plane_with_slit
 
@@ -37,6 +37,19 @@ def test_linear_weights_are_restored_exactly():
     assert 20 < gap.sum() < len(gap) / 2
     result = filled(spoilt(weights, gap), ~gap, parts_of(vertices, triangles))
     np.testing.assert_allclose(result.toarray(), weights.toarray(), atol=1e-6)
+
+
+@pytest.mark.parametrize(("strength", "own_share"), [(1e-9, 0.0), (1e9, 1.0)])
+def test_what_is_held_lies_between_its_own_weights_and_those_around_it(strength, own_share):
+    vertices, triangles = plane(16, jitter=0.3)
+    straight = shares(vertices[:, 0] / np.ptp(vertices[:, 0]))
+    gap = np.linalg.norm(vertices - vertices.mean(axis=0), axis=1) < 0.3 * np.ptp(vertices[:, 0])
+    parts, own = parts_of(vertices, triangles), spoilt(straight, gap).toarray()
+    own[gap] = [0.25, 0.75]
+    held = np.full(gap.sum(), strength)
+    found = continued(csr_array(own), gap, parts, held).toarray()
+    expected = (1 - own_share) * straight.toarray()[gap] + own_share * own[gap]
+    np.testing.assert_allclose(found, expected, atol=1e-6)
 
 
 def test_what_is_trusted_does_not_change_and_without_any_trust_nothing_does():

@@ -8,6 +8,7 @@ from scipy.sparse import csr_array
 from engine import MatchError, SurfaceMap, SurfacePoints, TriangleMesh, run
 from engine.retarget.weights.skin_weights import carried, row_differences, row_sums
 from engine.retarget.weights.weight_transfer import Columns, carry_weights_steps, put_in
+from tests.engine.retarget.weights.test_rigid_parts import body_with_eye, onto
 from tests.engine.retarget.weights.test_weight_rejection import broken
 from tests.shapes import creature, cut_open
 from tests.skeletons import creature_weights
@@ -39,6 +40,21 @@ def test_torn_vertices_are_filled_in_and_told():
     both = csr_array(np.concatenate([np.ones((mesh.vertex_count, 1)), mask.toarray()], axis=1))
     told = run(carry_weights_steps(both, mesh, mesh, surface_map, telling=np.array([True, False])))
     assert not told.torn.any()
+
+
+def test_a_loose_part_moves_as_one_or_by_one_bone_or_as_the_map_has_it():
+    (source, source_eye), (target, eye) = body_with_eye(8, 3), body_with_eye(6, 2)
+    height = 0.5 + source.vertices[:, 0] / 3
+    weights = csr_array(np.stack([np.where(source_eye, 0.25, height), np.where(source_eye, 0.75, 1 - height)], axis=1))
+    to_source = onto(target, source)
+    triangles = to_source.triangles.copy()
+    triangles[np.flatnonzero(eye)[:4]] = 0  # which go astray
+    to_source = SurfaceMap.from_barycentric(source, triangles, to_source.barycentric)
+    strays = carried(weights, to_source).toarray()[eye]
+    for known, expected in ((0, [[0.25, 0.75]]), (1, [[0.0, 1.0]]), (-1, strays)):
+        pieces = np.where(eye, known, 0)
+        result = run(carry_weights_steps(weights, source, target, to_source, fill=False, pieces=pieces))
+        np.testing.assert_allclose(result.weights.toarray()[eye], np.broadcast_to(expected, strays.shape))
 
 
 def test_weights_and_maps_of_other_meshes_are_refused():
