@@ -175,6 +175,17 @@ def test_the_foot_that_carries_is_on_the_ground_whatever_the_legs_are_like(someo
     found = transfer_motion(motion, pairing, target)
     toes = found.motion.heads[np.arange(len(motion)), standing, 2]
     assert np.abs(toes - target.heads[standing, 2]).max() < 0.01
+    large = Skeleton(tree.parents, *(100 * each for each in ends))
+    scaled = BonePairing(numbers, numbers, np.ones(len(tree)), same, large.heads, np.eye(3))
+    giant = Motion(Skeleton(tree.parents, 100 * tree.heads, 100 * tree.tails), motion.turns, 100 * motion.heads)
+    for feet in (False, True):
+        settings = MotionSettings(feet=feet)
+        one, other, same_again = (
+            transfer_motion(*each, settings).motion.heads
+            for each in ((motion, pairing, target), (motion, scaled, large), (giant, pairing, target))
+        )
+        np.testing.assert_allclose(other, 100 * one, atol=1e-6)
+        np.testing.assert_allclose(same_again, one, atol=1e-8)
     # Far above the ground there is nothing to stand on.
     plain, above = (
         transfer_motion(Motion(tree, motion.turns, motion.heads + up), pairing, target).motion.heads
@@ -207,7 +218,7 @@ def test_stride_and_place(someone):
 def test_the_way_is_taken_out_evenly_in_time(someone):
     """Poses lie close together around keys, and keys do not lie evenly."""
     times = np.array([-0.01, 0, 0.01, 0.19, 0.2, 0.21, 0.99, 1, 1.01])
-    motion = moved(someone.rig, {"head": np.zeros((len(times), 3))}, np.outer(times, [2.0, 1, 0]))
+    motion = moved(someone.rig, {"head": np.zeros((len(times), 3))}, np.outer(times, [2.0, 1, 0]) + np.ones(3))
     _, pairing = stretched(someone, 1.0)
     settings, tree = MotionSettings(in_place=True), someone.rig.skeleton
     heads = transfer_motion(motion, pairing, tree, settings, times=times).motion.heads
