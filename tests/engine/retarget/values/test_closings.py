@@ -87,6 +87,18 @@ def test_lids_meet_on_an_eye_of_another_height(head, blink, by):
     assert not kept[still].any()
 
 
+@pytest.mark.parametrize(("unit", "its_unit"), [(100.0, 1.0), (1.0, 0.01)])
+def test_units_of_length_do_not_matter(head, blink, unit, its_unit):
+    target, maps = wider(head, 1.3)
+    (kept,) = run(closings_kept_steps(head[0], [blink], maps, target, [blink]))
+    source, other = (
+        TriangleMesh(size * mesh.vertices, mesh.triangles) for size, mesh in ((unit, head[0]), (its_unit, target))
+    )
+    maps = SurfaceMap.identity(other), SurfaceMap.identity(source)
+    (again,) = run(closings_kept_steps(source, [unit * blink], maps, other, [its_unit * blink]))
+    np.testing.assert_allclose(again / its_unit, kept, atol=1e-6)
+
+
 def test_a_lash_goes_as_far_as_its_lid(head, blink):
     target, maps = wider(head, 1.3)
     (kept,) = run(closings_kept_steps(head[0], [blink], maps, target, [blink]))
@@ -131,3 +143,5 @@ def test_what_does_not_belong_together_is_refused(head, blink):
         run(closings_kept_steps(head[0], [blink], maps, target, [blink[1:]]))
     with pytest.raises(MatchError, match="one of 3 vertices"):
         run(closings_kept_steps(head[0], [blink], (maps[0], SurfaceMap.identity(few)), target, [blink]))
+    with pytest.raises(MatchError, match="one of 3 vertices"):
+        run(closings_kept_steps(head[0], [blink], (SurfaceMap.identity(few), maps[1]), target, [blink]))
