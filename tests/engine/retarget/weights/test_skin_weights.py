@@ -108,6 +108,11 @@ def test_a_weight_fades_before_it_goes():
     np.testing.assert_allclose(steps[300], [1, 0, 0], atol=1e-12)
 
 
+def test_vertices_without_weights_stay_so():
+    weights = sparse([[0, 0, 0], [0.5, 0.4, 0.1], [0.5, 0.4, 0.1], [0, 0, 0]])
+    np.testing.assert_allclose(limited(weights, 2).sum(axis=1), [0, 1, 1, 0])
+
+
 def test_equal_weights_stay_equal_where_some_must_go():
     np.testing.assert_allclose(limited(sparse([[0.2] * 5]), 4).toarray(), [[0.25, 0.25, 0.25, 0.25, 0]])
 
