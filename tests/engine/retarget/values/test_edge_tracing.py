@@ -73,6 +73,16 @@ def test_a_line_that_the_target_has_is_found_exactly(counts):
     assert abs(target.vertices[edges][:, :, 0] - line).max() < 0.5 / (counts[1] - 1) + 1e-9
 
 
+def test_a_line_that_the_target_has_not_is_followed_as_near_as_edges_are():
+    source, target = TriangleMesh(*plane(21)), TriangleMesh(*plane(61, jitter=0.35))
+    marked = on_line(source, [1, 0, 0], 0.5)
+    edges = target.edges[trace(source, marked, np.ones(len(marked)), target).values > 0]
+    away = 60 * abs(target.vertices[edges].mean(axis=1)[:, 0] - 0.5)
+    assert away.mean() < 0.18
+    assert away.max() < 0.7
+    assert length(target, edges) < 1.08
+
+
 def test_a_loop_stays_a_single_loop():
     source = TriangleMesh(*icosphere(12))
     target = TriangleMesh(icosphere(9)[0] @ rotation([3, 1, 2], 0.8).T, icosphere(9)[1])
