@@ -7,10 +7,22 @@ import numpy as np
 import pytest
 
 from engine import MeshError, SurfaceMap, TriangleMesh
-from engine.retarget.values.corner_transfer import carry_normals, carry_point_marks
+from engine.retarget.values.corner_transfer import carry_corner_values, carry_normals, carry_point_marks
 from engine.retarget.values.face_correspondence import FacePlaces
 from tests.faces import closest_map, grid, triangulated, tube
 from tests.shapes import rotation
+
+
+@pytest.mark.parametrize("unit", [1e-5, 1.0, 1e5])
+def test_what_jumps_from_face_to_face_does_so_there_as_well_in_any_unit(unit):
+    source, target = grid(4, 4), grid(7, 5)
+    mesh = triangulated(*source[:2])
+    places = FacePlaces(mesh, target[1], closest_map(target[0], mesh))
+    ramp, side = source[2][:, 1], source[0][source[1].corner_vertices, 0].reshape(-1, 4).mean(axis=1) > 0.25
+    values = unit * (ramp + 3 * np.repeat(side, 4))
+    carried = carry_corner_values(values, source[1], places) / unit
+    middles = target[2][:, 0].reshape(-1, 4).mean(axis=1)
+    np.testing.assert_allclose(carried, target[2][:, 1] + 3 * np.repeat(middles > 0.25, 4), atol=1e-9)
 
 
 def test_normals_of_the_surface_become_those_of_the_other():
