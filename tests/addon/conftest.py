@@ -86,3 +86,16 @@ def dense_pair(dense_file, empty_file):
     assert empty_file
     bpy.ops.wm.open_mainfile(filepath=dense_file)
     return bpy.data.objects["Source"], bpy.data.objects["Target"]
+
+
+@pytest.fixture
+def sparse_pair(empty_file):
+    """Source and target of a match without a dense map."""
+    import bpy
+
+    from tests.addon.scenes import QUICK, add_picked_pair
+
+    assert empty_file
+    source, target = add_picked_pair()
+    bpy.ops.hiermatch.match(**QUICK)
+    return source, target

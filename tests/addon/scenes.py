@@ -71,6 +71,13 @@ def add_pair():
     return source, target
 
 
+def add_picked_pair():
+    """Add the same, picked in the panel."""
+    state = bpy.context.scene.hiermatch
+    state.source, state.target = add_pair()
+    return state.source, state.target
+
+
 def edit_twin(obj):
     """Put another object with the same mesh into Edit Mode, and return it."""
     twin = obj.copy()

@@ -2,7 +2,7 @@
 """Pair the bones of characters of several makers, and let one walk as the other does.
 
     python -m tests.benchmarks.maker_rigs --data FOLDER [--only SOURCE:TARGET,...] [--feet] [--action NAME]
-                                         [--save FOLDER] [--strips FOLDER]
+                                         [--guided] [--save FOLDER] [--strips FOLDER]
 
 FOLDER holds rigged characters as .glb or .vrm files. Without --only these are all pairs of people of different makers,
 and of four-legged animals, that are named in `PEOPLE` and `ANIMALS`, each once. Everything goes through the buttons:
@@ -14,8 +14,8 @@ source has as well, told by names; how many are paired with the other side; the 
 upper and lower limbs of source and target over the action, each as seen from its own front, in degrees (not for
 animals, whose legs are built in other pieces); how far the lowest point of the target is below the ground at most, and
 how far the source is below its own, both in % of the height; and the seconds of one core that pairing, match included,
-and the motion took. --feet is *Feet on Ground*. --save keeps a .blend of each pair, and
---strips a strip of frames of both, to look at.
+and the motion took. --feet is *Feet on Ground*; --guided gives the tips of hands and feet as landmarks. --save keeps a
+.blend of each pair, and --strips a strip of frames of both, to look at.
 """
 
 import argparse

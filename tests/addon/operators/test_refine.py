@@ -10,20 +10,11 @@ from hiermatch.hiermatch_addon.operators.steering.landmark_picking import select
 from hiermatch.hiermatch_addon.storage.landmarks import add_landmarks, find_landmarks
 from hiermatch.hiermatch_addon.storage.stored_map import find_maps
 
-from tests.addon.scenes import QUICK, add_blob, add_pair, snapshot, values_of, weights_of
+from tests.addon.scenes import QUICK, add_blob, snapshot, values_of, weights_of
 
 
 def steering():
     return bpy.context.scene.hiermatch_steering
-
-
-@pytest.fixture
-def sparse_pair():
-    source, target = add_pair()
-    state = bpy.context.scene.hiermatch
-    state.source, state.target = source, target
-    bpy.ops.hiermatch.match(**QUICK)
-    return source, target
 
 
 def groups(obj):

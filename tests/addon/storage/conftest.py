@@ -3,15 +3,11 @@
 
 from __future__ import annotations
 
-import bpy
 import pytest
 
-from tests.addon.scenes import add_pair
+from tests.addon.scenes import add_picked_pair
 
 
 @pytest.fixture
 def pair():
-    source, target = add_pair()
-    state = bpy.context.scene.hiermatch
-    state.source, state.target = source, target
-    return source, target
+    return add_picked_pair()

@@ -20,15 +20,6 @@ from tools.source_extension import ROOT
 VIEWS = [view for view, *_ in VIEW_ITEMS if view != "NONE"]
 
 
-@pytest.fixture
-def sparse_pair():
-    source, target = add_pair()
-    state = bpy.context.scene.hiermatch
-    state.source, state.target = source, target
-    bpy.ops.hiermatch.match(**QUICK)
-    return source, target
-
-
 def show(view):
     assert bpy.ops.hiermatch.show(view=view) == {"FINISHED"}
 

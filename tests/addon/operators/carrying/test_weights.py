@@ -342,17 +342,22 @@ def test_options_make_the_settings():
         bpy.utils.unregister_class(Options)
 
 
+def joined_piece(obj):
+    """Join a ball to an object, and return its vertices."""
+    count = len(obj.data.vertices)
+    piece = add_blob("Piece", 8, 6)
+    bpy.ops.object.select_all(action="DESELECT")
+    for each in (piece, obj):
+        each.select_set(state=True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.join()
+    return np.arange(count, len(obj.data.vertices))
+
+
 def test_a_group_says_which_loose_pieces_are_rigid():
     """A strap across two bones bends with them, unless one of its vertices is in the group with weight 1."""
     source, _ = add_rigged(resolution=4)
-    body = len(source.data.vertices)
-    piece = add_blob("Strap", 8, 6)
-    bpy.ops.object.select_all(action="DESELECT")
-    for obj in (piece, source):
-        obj.select_set(state=True)
-    bpy.context.view_layer.objects.active = source
-    bpy.ops.object.join()
-    strap = np.arange(body, len(source.data.vertices))
+    strap = joined_piece(source)
     for number, share in zip(strap.tolist(), np.linspace(0.2, 0.9, len(strap)).tolist(), strict=True):
         source.vertex_groups["spine"].add([number], share, "REPLACE")
         source.vertex_groups["chest"].add([number], 1 - share, "REPLACE")
@@ -363,19 +368,12 @@ def test_a_group_says_which_loose_pieces_are_rigid():
     target.vertex_groups.new(name="Rigid").add([int(strap[3])], 1.0, "REPLACE")
     carry(source, target)
     np.testing.assert_array_equal(dense(target, names)[strap], np.tile([1, 0], (len(strap), 1)))
-    np.testing.assert_allclose(dense(target, names)[:body], dense(source, names)[:body], atol=1e-5)
+    np.testing.assert_allclose(dense(target, names)[: strap[0]], dense(source, names)[: strap[0]], atol=1e-5)
 
 
 def test_a_piece_is_rigid_as_on_the_source_unless_the_group_or_the_option_says_no():
     source, _ = add_rigged(resolution=4)
-    body = len(source.data.vertices)
-    piece = add_blob("Eye", 8, 6)
-    bpy.ops.object.select_all(action="DESELECT")
-    for obj in (piece, source):
-        obj.select_set(state=True)
-    bpy.context.view_layer.objects.active = source
-    bpy.ops.object.join()
-    eye = np.arange(body, len(source.data.vertices))
+    eye = joined_piece(source)
     source.vertex_groups["head"].add(eye.tolist(), 1.0, "REPLACE")
     target = add_target(source, part=0.0)[0]
     passage = true_passage(source, target)

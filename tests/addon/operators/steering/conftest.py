@@ -3,19 +3,16 @@
 
 from types import SimpleNamespace
 
-import bpy
 import pytest
 from hiermatch.hiermatch_addon.operators.steering import landmark_clicks
 from hiermatch.hiermatch_addon.operators.steering.viewports import Viewport
 
-from tests.addon.scenes import add_pair
+from tests.addon.scenes import add_picked_pair
 
 
 @pytest.fixture
 def pair():
-    state = bpy.context.scene.hiermatch
-    state.source, state.target = add_pair()
-    return state.source, state.target
+    return add_picked_pair()
 
 
 @pytest.fixture
