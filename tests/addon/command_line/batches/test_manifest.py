@@ -122,6 +122,17 @@ def test_another_encoding_is_told(tmp_path):
         read_manifest(path, {}, "match")
 
 
+def test_files_about_a_pair_are_called_after_it_and_no_two_alike(tmp_path):
+    path = tmp_path / "pairs.json"
+    names = ["\u00c4rm 1/2: left-b_c", "\u00c4rm 1/2? left-b_c", 200 * "x"]
+    rows = [{"name": name, "source": "a.obj", "target": "b.obj", "output": f"{n}.obj"} for n, name in enumerate(names)]
+    path.write_text(json.dumps(rows))
+    stems = [pair.stem for pair in read_manifest(path, {}, "match")]
+    readable = [stem.rpartition("-")[0] for stem in stems]
+    assert readable == ["\u00c4rm_1_2__left-b_c"] * 2 + [60 * "x"]
+    assert len(set(stems)) == 3
+
+
 def test_a_pair_may_read_what_one_before_it_writes(tmp_path):
     path = tmp_path / "pairs.csv"
     path.write_text("source,target,output\na.obj,b.obj,o.blend\no.blend:b,c.obj,p.blend\n")
