@@ -13,6 +13,7 @@ from hiermatch.hiermatch_addon.scene.armatures import bone_of, find_armature, re
 from hiermatch.hiermatch_addon.scene.character import (
     Character,
     SideReference,
+    is_of,
     joined,
     parts_of,
     positions_of,
@@ -81,6 +82,17 @@ class TestWhatIsMeant:
         below.objects.link(parts[1])
         assert named_side(layer(), "Hero") == Character("Hero", tuple(parts[:2]))
         assert named_side(layer(), "Clothes") == parts[1]
+
+    def test_what_is_of_a_character_however_that_is_picked(self, cut):
+        parts, armature = cut
+        hero, bare = bpy.data.collections.new("Hero"), add_blob("Bare")
+        bpy.context.scene.collection.children.link(hero)
+        for part in parts[:2]:
+            hero.objects.link(part)
+        assert [is_of(part, hero) for part in (*parts, bare)] == [True, True, False, False]
+        for chosen in (armature, parts[2]):
+            assert [is_of(part, chosen) for part in (*parts, bare)] == [True, True, True, False]
+        assert [is_of(part, bare) for part in (*parts, bare)] == [False, False, False, True]
 
     def test_an_empty_means_the_meshes_below_it(self):
         root = bpy.data.objects.new("Root", None)
