@@ -31,10 +31,10 @@ class TestRegions:
         ring = [face.index for face in source.data.polygons if 0 in face.vertices]
         mark_faces(source, ring)
         assert np.flatnonzero(excluded_vertices(source, "Marked")).tolist() == [0]
-        for name in ("Skin", "Eye"):
-            source.data.materials.append(bpy.data.materials.new(name))
+        for material in (bpy.data.materials.new("Skin"), None, bpy.data.materials.new("Eye")):
+            source.data.materials.append(material)
         for face in ring:
-            source.data.polygons[face].material_index = 1
+            source.data.polygons[face].material_index = 2
         assert np.flatnonzero(excluded_vertices(source, "Eye")).tolist() == [0]
         assert region_names(source) == ["Marked", "Skin", "Eye"]
 

@@ -40,6 +40,17 @@ class TestFiles:
         bpy.ops.hiermatch.load_landmarks(filepath=str(path))
         assert find_landmarks(*pair) == [Landmark(1, 3, 5), Landmark(2, 100, 110, use=False)]
 
+    def test_on_vertices_that_lie_at_one_place(self, pair, tmp_path, capfd):
+        for obj in pair:
+            obj.data.vertices[101].co = obj.data.vertices[100].co
+        add_landmarks(*pair, [(101, 101)])
+        path = str(tmp_path / "doubled.json")
+        bpy.ops.hiermatch.save_landmarks(filepath=path)
+        bpy.ops.hiermatch.clear_landmarks()
+        bpy.ops.hiermatch.load_landmarks(filepath=path)
+        assert found(pair) == [(1, 101, 101)]
+        assert "has other vertices" not in capfd.readouterr().out
+
     def test_beside_what_is_there(self, pair, path):
         add_landmarks(*pair, [(50, 60)])
         bpy.ops.hiermatch.load_landmarks(filepath=str(path), replace=False)
