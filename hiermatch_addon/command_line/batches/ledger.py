@@ -8,8 +8,9 @@ import csv
 import io
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from ...common.file_reading import BAD_FILE
 from ...common.file_writing import write_whole
 from ..reports import FORMAT, STATUSES, as_json, confidence_of, file_state
 
@@ -37,6 +38,9 @@ _COLUMNS = (
     "report",
 )
 """Of the summary."""
+
+_PENDING: Final = {"status": "pending", "doubtful": False, "seconds": None, "error": ""}
+"""Stands for the report of a pair that has none."""
 
 
 class Ledger:
@@ -75,13 +79,17 @@ class Ledger:
     def report_of(self, pair: Pair, *, any_options: bool = False) -> dict[str, Any] | None:
         """Return the report of a pair; None if there is none, or the pair or its files are others since.
 
-        With `any_options` the pair may have been done with other options.
+        With `any_options` the pair may have been done with other options.  A damaged report counts as none.
         """
         try:
             report = json.loads(self.found_path(pair).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
+            _told(report)
+            return self._if_current(report, pair, any_options=any_options)
+        except (OSError, *BAD_FILE):
             return None
-        if not isinstance(report, dict) or report.get("format") != FORMAT:
+
+    def _if_current(self, report: dict[str, Any], pair: Pair, *, any_options: bool) -> dict[str, Any] | None:
+        if report.get("format") != FORMAT:
             return None
         if report.get("key") not in (pair.key, pair.former[1]) and not any_options:
             return None
@@ -149,10 +157,8 @@ def summary_rows(
     """
     rows = []
     for pair in pairs:
-        report = ledger.report_of(pair, any_options=any_options) or {}
-        match = report.get("match") or {}
-        quality = match.get("quality") or {}
-        confidence = confidence_of(match, report.get("carried", ()))
+        told = _told(ledger.report_of(pair, any_options=any_options) or _PENDING)
+        confidence = told["confidence"]
         rows.append(
             {
                 "row": pair.number,
@@ -161,18 +167,29 @@ def summary_rows(
                 "source": pair.source,
                 "target": pair.target,
                 "output": "|".join(pair.outputs),
-                "status": report.get("status", "pending"),
+                **told,
                 "doubtful": confidence is not None and confidence < least_confidence,
-                "seconds": report.get("seconds"),
-                "confidence": confidence,
-                "distortion": match.get("distortion"),
-                "sentence": quality.get("sentence", ""),
-                "alternatives": len(match["alternatives"]) if "alternatives" in match else None,
-                "error": report.get("error", ""),
                 "report": str(ledger.found_path(pair)),
             }
         )
     return rows
+
+
+def _told(report: dict[str, Any]) -> dict[str, Any]:
+    """Return what a summary tells of a report; of a damaged one that raises one of `BAD_FILE`."""
+    match = report.get("match") or {}
+    quality = match.get("quality") or {}
+    confidence = confidence_of(match, report.get("carried", ()))
+    return {
+        "status": report["status"],
+        "doubtful": bool(report["doubtful"]),
+        "seconds": report["seconds"],
+        "confidence": None if confidence is None else float(confidence),
+        "distortion": match.get("distortion"),
+        "sentence": quality.get("sentence", ""),
+        "alternatives": len(match["alternatives"]) if "alternatives" in match else None,
+        "error": report["error"],
+    }
 
 
 def counts(rows: Sequence[dict[str, Any]]) -> dict[str, int]:

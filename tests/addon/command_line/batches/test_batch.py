@@ -196,6 +196,34 @@ def test_reports_of_when_all_paths_counted_as_absolute_still_count(stand_in):
     assert len(list(ledger.folder.glob("*-*.json"))) == 3
 
 
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"inputs": 1},
+        {"inputs": ["target.obj"]},
+        {"match": "good"},
+        {"match": {"quality": [0.5]}},
+        {"match": {"quality": {"confidence": "high"}}},
+        {"match": {"alternatives": 3}},
+        {"carried": ["rig"]},
+        {"status": ["done"]},
+        {"seconds": None, "doubtful": ...},
+        ...,
+    ],
+)
+def test_a_damaged_report_counts_as_none(damage, stand_in):
+    stand_in.write(["a", "b"])
+    assert stand_in.run() == (0, ["a", "b"])
+    (path,) = (stand_in.folder / "pairs.csv.hiermatch").glob("a-*.json")
+    report = json.loads(path.read_text())
+    changed = [] if damage is ... else {name: value for name, value in {**report, **damage}.items() if value is not ...}
+    path.write_text(json.dumps(changed))
+    assert stand_in.run("--summary") == (0, [])
+    assert stand_in.summary["a"]["status"] == "pending"
+    assert stand_in.run() == (0, ["a"])
+    assert stand_in.summary["a"]["status"] == "done"
+
+
 def test_rows_may_move_and_be_added(stand_in):
     stand_in.write(["a", "b"])
     stand_in.run()
