@@ -225,18 +225,21 @@ def run_reported(
     Raises
     ------
     ObjectError
-        If the report would be written over a file that is read, or two results into one file.
+        If the report would be written over a file that is read, or into one with a result.
     """
-    _check_kept([], [] if parsed.report in {None, "-"} else [Path(parsed.report)], inputs)
+    reported = [] if parsed.report in {None, "-"} else [Path(parsed.report)]
     outputs, others = _outputs(parsed, inputs)
-    _check_distinct([*outputs, *others])
+    _check_kept([], reported, inputs)
+    for path in (*outputs, *others):
+        _check_distinct([path, *reported])
     report = Report(parsed.command, parsed.report_key, parsed.least_confidence)
     report.inputs = [file_state(path.absolute()) for path in dict.fromkeys(inputs)]
     code, error = ExitCode.DONE, ""
     try:
         with interruptible() as interruption:
+            _check_distinct([*outputs, *others])
             _check_kept(outputs, others, inputs)
-            for path in (*outputs, *others):
+            for path in (*outputs, *others, *reported):
                 check_place(path)
             work(report)
         if parsed.strict and report.doubtful:
@@ -304,9 +307,8 @@ def _is_same(path: Path, other: Path) -> bool:
 
 
 def _outputs(parsed: argparse.Namespace, inputs: Sequence[Path]) -> tuple[list[Path], list[Path]]:
-    """Return the files that a command is to write: results, and others; one of its arguments may be what it reads."""
-    report = None if parsed.report in {None, "-"} else Path(parsed.report)
-    named = [*(getattr(parsed, name, None) for name in ("map", "write_pairs")), report]
+    """Return the files that a command is to write, beside the report: results, and others; it may read some of them."""
+    named = [getattr(parsed, name, None) for name in ("map", "write_pairs")]
     others = [path for path in named if path is not None and not any(path is read for read in inputs)]
     return list(getattr(parsed, "output", ())), others
 

@@ -282,6 +282,18 @@ def test_two_results_do_not_go_into_one_file(arguments, tmp_path, capsys, monkey
     }
 
 
+def test_a_former_report_does_not_stand_for_two_results_in_one_file(pair, tmp_path, capsys):
+    report = tmp_path / "report.json"
+    report.write_text('{"status": "done"}')
+    assert (
+        main(["match", *pair, *(f"--output={tmp_path / name}" for name in ("x.obj", "./x.obj")), f"--report={report}"])
+        == 1
+    )
+    assert "is to be written twice" in capsys.readouterr().err
+    assert report_of(report)["status"] == "failed"
+    assert "is to be written twice" in report_of(report)["error"]
+
+
 @pytest.mark.parametrize("name", ["out.blend", "out.obj", "map.npz"])
 def test_files_that_are_read_only_are_not_replaced(name, pair, tmp_path, capsys, monkeypatch):
     """As those are that a pipeline has published; who may replace all, as root may, is let be one who may not."""
