@@ -168,20 +168,20 @@ def add_least_confidence(group: Any) -> None:  # noqa: ANN401 - argparse's group
     """Add what a doubtful match is."""
     group.add_argument(
         "--least-confidence",
-        type=_finite,
+        type=_share,
         default=_LEAST_CONFIDENCE,
         metavar="X",
-        help="Below it, 0 to 1, a dense match is called doubtful. (default: %(default)s)",
+        help="Below it, 0 to 1, or 0%% to 100%%, a dense match is called doubtful. (default: %(default)s)",
     )
 
 
-def _finite(text: str) -> float:
+def _share(text: str) -> float:
     try:
-        number = float(text)
+        number = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
     except ValueError:
         number = math.nan
-    if not math.isfinite(number):
-        raise argparse.ArgumentTypeError(f'"{text}" is no number')
+    if not 0 <= number <= 1:
+        raise argparse.ArgumentTypeError(f'"{text}" is not from 0 to 1; for one half, write 0.5 or 50%')
     return number
 
 

@@ -112,7 +112,7 @@ def test_a_report_that_nobody_takes_is_told():
 
 
 def test_strict_tells_of_a_doubtful_match(pair, tmp_path):
-    arguments = [*pair, "--strict", "--least-confidence=1.5", f"--report={tmp_path / 'r.json'}", *flags(DENSE)]
+    arguments = [*pair, "--strict", "--least-confidence=100%", f"--report={tmp_path / 'r.json'}", *flags(DENSE)]
     assert main(["match", *arguments]) == 3
     assert report_of(tmp_path / "r.json")["doubtful"]
     assert report_of(tmp_path / "r.json")["status"] == "done"
@@ -130,6 +130,8 @@ def test_strict_tells_of_a_doubtful_match(pair, tmp_path):
         (["match", "a.obj", "b.obj", "--points=2"], 2, "not between 3 and 1024"),
         (["match", "a.obj", "b.obj", "--points=many"], 2, "no whole number"),
         (["match", "a.obj", "b.obj", "--linear-weight=nan"], 2, "not between"),
+        (["match", "a.obj", "b.obj", "--least-confidence=50"], 2, '"50" is not from 0 to 1; for one half, write 0.5'),
+        (["match", "a.obj", "b.obj", "--least-confidence=-1%"], 2, "not from 0 to 1"),
         (["match", "a.obj", "b.obj", "--solver=magic"], 2, "none of hierarchical, flat, gmds"),
         (["match", "a.obj", "b.obj", "--output=a.txt"], 2, "does not end with"),
         (["match", "a.obj", "b.obj", "--map=a.txt"], 2, "does not end with .npz, .json"),

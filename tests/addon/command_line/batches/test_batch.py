@@ -293,7 +293,10 @@ def test_doubt_is_by_the_least_confidence_that_is_given_now(stand_in):
         code, tried = stand_in.run("--strict", f"--least-confidence={least}")
         assert (code, tried) == (3 if "True" in doubtful else 0, [])
         assert [row["doubtful"] for row in stand_in.summary.values()] == doubtful
-    for wrong in ("nan", "inf", "much"):
+    for percent, doubtful in (("80%", ["True", "True"]), ("20%", ["False", "False"])):
+        assert stand_in.run(f"--least-confidence={percent}") == (0, [])
+        assert [row["doubtful"] for row in stand_in.summary.values()] == doubtful
+    for wrong in ("nan", "inf", "much", "50", "-0.1", "%"):
         assert stand_in.run(f"--least-confidence={wrong}") == (2, [])
 
 
