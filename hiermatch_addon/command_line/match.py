@@ -53,7 +53,7 @@ def add_pair_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("target", type=mesh_argument, metavar="TARGET", help="FILE or FILE:NAME of the target.")
 
 
-def add_result_options(parser: argparse.ArgumentParser, what: str = "the target") -> None:
+def add_result_options(parser: argparse.ArgumentParser, what: str = "the target with its armature") -> None:
     """Add where results are written."""
     group = parser.add_argument_group("what is written")
     add_output_option(group, what)
@@ -74,8 +74,7 @@ def add_output_option(group: Any, what: str, kinds: Sequence[str] = KINDS) -> No
         action="append",
         default=[],
         metavar="FILE",
-        help=f"Write the whole scene into a .blend, or {what} with its armature into a {named}; may be given several "
-        "times.",
+        help=f"Write the whole scene into a .blend, or {what} into a {named}; may be given several times.",
     )
 
 

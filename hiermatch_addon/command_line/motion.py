@@ -43,7 +43,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
     )
     add_pair_arguments(parser)
     group = parser.add_argument_group("what is written")
-    add_output_option(group, "the target with its new clips", MOVING_KINDS)
+    add_output_option(group, "the target with its armature and new clips", MOVING_KINDS)
     group.add_argument("--write-pairs", type=Path, metavar="FILE.json", help="Write the pairs of bones as well.")
     add_report_options(parser)
     add_options(parser, "retarget_action", title="what is carried over")

@@ -42,7 +42,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
-    add_result_options(parser, "the target and the fitted rig")
+    add_result_options(parser, "the target with its armature, and the fitted rig,")
     add_report_options(parser)
     add_options(parser, "fit_my_rig", title="which armature is fitted, and how")
     add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")

@@ -47,7 +47,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         epilog=EXIT_CODES,
     )
     parser.add_argument("mesh", type=mesh_argument, metavar="MESH", help="FILE or FILE:OBJECT.")
-    add_result_options(parser, "the mesh")
+    add_result_options(parser, "the mesh with its armature")
     add_report_options(parser)
     add_options(parser, "symmetrise", title="what is made symmetric")
     parser.set_defaults(run=_run)

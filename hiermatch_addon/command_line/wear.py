@@ -42,7 +42,7 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
-    add_result_options(parser, "the target with its outfit")
+    add_result_options(parser, "the target with its armature and outfit")
     add_report_options(parser)
     add_options(parser, "wear", title="how it is fitted")
     add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")

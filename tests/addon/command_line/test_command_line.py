@@ -376,6 +376,21 @@ def test_every_option_of_the_operators_is_there():
     assert given == {"solver": "GMDS", "dense": False, "diffusion_time": scene.diffusion_time}
 
 
+@pytest.mark.parametrize(
+    ("command", "what"),
+    [
+        ("retarget", "the target with its armature into a"),
+        ("symmetry", "the mesh with its armature into a"),
+        ("motion", "the target with its armature and new clips into a"),
+        ("my-rig", "the target with its armature, and the fitted rig, into a"),
+        ("wear", "the target with its armature and outfit into a"),
+    ],
+)
+def test_help_says_what_is_written(command, what, capsys):
+    assert main([command, "--help"]) == 0
+    assert what in " ".join(capsys.readouterr().out.split())
+
+
 def test_help_says_what_choices_mean_and_in_what_angles_are(capsys):
     assert main(["motion", "--help"]) == 0
     said = " ".join(capsys.readouterr().out.split())
