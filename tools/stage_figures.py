@@ -237,10 +237,12 @@ STAGES = {stage.__name__: stage for stage in (geometry, shapes, hierarchical, de
 def main() -> None:
     """Render what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("stages", nargs="*", choices=[[], *STAGES], help="which stages (default: all)")
+    parser.add_argument("stages", nargs="*", metavar="STAGE", help=f"{', '.join(STAGES)} (default: all)")
     parser.add_argument("--output", type=Path, default=ROOT / "docs" / "images")
     parser.add_argument("--samples", type=int, default=16, help="samples of each pixel (default %(default)s)")
     options = parser.parse_args()
+    if unknown := set(options.stages) - set(STAGES):
+        parser.error(f"there is no stage {', '.join(sorted(unknown))}")
     options.output.mkdir(parents=True, exist_ok=True)
     pair = demo_pair()
     for stage in options.stages or STAGES:
