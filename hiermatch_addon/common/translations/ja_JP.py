@@ -1763,7 +1763,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was fitted.': '"{0}"を合わせました。',
     '"{0}" was fitted: {1}.': '"{0}"を合わせました: {1}。',
     '"{0}" should be checked: {1}.': '"{0}"を確認してください: {1}。',
-    "kept {0} as they are": "{0}の形を保持",
+    "kept the shape of {0}": "{0}の形を保持",
     "pushed {0} of it out of what is below": "{0}を下のものの外へ押し出し",
     "laid onto the skin of the other body": "相手の体の肌の上に配置",
     "what is below still shows through {0} of it": "下のものがまだ{0}で突き抜けています",

@@ -1441,7 +1441,7 @@ MESSAGES: Final[dict[str, str]] = {
     '"{0}" was fitted.': '已适配"{0}"。',
     '"{0}" was fitted: {1}.': '已适配"{0}"：{1}。',
     '"{0}" should be checked: {1}.': '请检查"{0}"：{1}。',
-    "kept {0} as they are": "保持{0}不变形",
+    "kept the shape of {0}": "保持{0}不变形",
     "pushed {0} of it out of what is below": "将其{0}推出下方之物",
     "laid onto the skin of the other body": "置于另一身体的皮肤上",
     "what is below still shows through {0} of it": "下方之物仍从其{0}处穿出",

@@ -28,7 +28,7 @@ def done(name: str, fitted: FittedItem, *, is_body: bool) -> str:
     parts = []
     pieces = int(fitted.pieces.max(initial=-1)) + 1
     if pieces:
-        parts.append(f"kept {counted(pieces, 'rigid part')} as they are")
+        parts.append(f"kept the shape of {counted(pieces, 'rigid part')}")
     moved = float((fitted.pushed > 0).mean())
     if is_body:  # it lay nowhere above the skin, and is at it everywhere
         parts.append("laid onto the skin of the other body")

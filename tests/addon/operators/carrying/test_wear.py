@@ -340,7 +340,7 @@ def test_how_an_item_fits_is_kept_on_it(dressed_pair):
     _, _, shirt, _ = dressed_pair
     shirt.hiermatch_wear.fit = "RIGID"
     assert wear("Shirt") == {"FINISHED"}
-    assert "1 rigid part" in bpy.context.scene.hiermatch_retarget.report.remarks
+    assert "kept the shape of 1 rigid part." in bpy.context.scene.hiermatch_retarget.report.remarks
     assert fitted("Shirt").hiermatch_wear.fit == "RIGID"
     shirt.hiermatch_wear.fit = "LOOSE"
     assert wear("Shirt") == {"FINISHED"}
