@@ -130,23 +130,29 @@ def match_steps(
     task = MatchTask(settings, pairs if len(pairs) else None, assumed=assumed and len(pairs) > 0)
     masks = left_out_of((source, target), excluded)
     call_helpers()
-    x, y = yield from within(_shapes_steps((source, target), masks, known), 0.0, 0.06)
-    if not has_limbs(x, y):  # which are more when they are joined
-        fitting_settings(x, y, settings)
-    if not settings.dense:
-        result = yield from within(matched_steps(x, y, task), 0.06, 1.0)
-    elif task.landmarks is None and (longest_border(x) > _CUT or longest_border(y) > _CUT) and not has_limbs(x, y):
-        result = yield from within(_overlapping_steps(x, y, task), 0.06, 1.0)
-    else:
-        end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
-        result = yield from within(_whole_steps(x, y, task, end), 0.06, 1.0)
-    if known is not None:
-        known.trim()
+    try:
+        x, y = yield from within(_shapes_steps((source, target), masks, known), 0.0, 0.06)
+        if not has_limbs(x, y):  # which are more when they are joined
+            fitting_settings(x, y, settings)
+        result = yield from within(_chosen_steps(x, y, task), 0.06, 1.0)
+    finally:
+        if known is not None:
+            known.trim()
     yield Progress(1.0, "Done")
     return task.clock.noted(result)
 
 
 match = at_once(match_steps)
+
+
+def _chosen_steps(x: Shape, y: Shape, task: MatchTask) -> Steps[MatchResult]:
+    """Match in the way that two shapes and the settings ask for."""
+    if not task.settings.dense:
+        return (yield from matched_steps(x, y, task))
+    if task.landmarks is None and (longest_border(x) > _CUT or longest_border(y) > _CUT) and not has_limbs(x, y):
+        return (yield from _overlapping_steps(x, y, task))
+    end = _FIRST if has_border(x) or has_border(y) else _FIRST_OF_CLOSED
+    return (yield from _whole_steps(x, y, task, end))
 
 
 def _whole_steps(x: Shape, y: Shape, task: MatchTask, end: float, *, is_sure: bool = False) -> Steps[MatchResult]:

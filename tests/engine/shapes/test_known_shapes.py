@@ -2,8 +2,9 @@
 import pickle
 
 import numpy as np
+import pytest
 
-from engine import KnownShapes, MatchSettings, Shape, TriangleMesh, match
+from engine import KnownShapes, MatchError, MatchSettings, Shape, TriangleMesh, match
 from engine.matching import matching
 from tests.shapes import icosphere
 
@@ -64,6 +65,13 @@ def test_its_memory_is_bounded_and_what_was_used_last_stays():
     assert known.find(meshes[0], "source", None) is not None
     known.megabytes = 0.0
     known.trim()
+    assert len(known) == 0
+
+
+def test_its_memory_is_bounded_after_a_match_that_fails_as_well():
+    known = KnownShapes(0.01)
+    with pytest.raises(MatchError, match="no such vertex"):
+        match(egg(1, 2, 3), egg(1, 2, 4), MORE, landmarks=[[0, 10**6]], known=known)
     assert len(known) == 0
 
 
