@@ -127,7 +127,8 @@ def vertex_pairs(pairs: ArrayLike | None) -> Ints:
         array = np.array(None)
     if array.size == 0:
         return np.empty((0, 2), np.int64)
-    if array.ndim != 2 or array.shape[1] != 2 or not np.issubdtype(array.dtype, np.integer):
+    whole = np.issubdtype(array.dtype, np.integer) and array.max() <= np.iinfo(np.int64).max
+    if array.ndim != 2 or array.shape[1] != 2 or not whole:
         raise MatchError(
             "Landmarks should be pairs of vertex numbers, first of the source and then of the target: whole numbers in "
             f"an array of the shape (k, 2), not {array.dtype} in the shape {array.shape}."

@@ -241,6 +241,7 @@ def test_a_match_with_landmarks_leaves_the_shapes_as_they_were(shapes):
         ([1, 2], r"pairs of vertex numbers.*shape \(2,\)"),
         ([[1, 2, 3]], r"pairs of vertex numbers.*shape \(1, 3\)"),
         ([[0.5, 2.0]], "whole numbers.*float64"),
+        (np.array([[0, 2**63]], np.uint64), "whole numbers.*uint64"),
         ([[i, i] for i in range(25)], "25 landmarks are more than the 24 points"),
         ([[0, 0], [10**6, 1]], "Landmark 2 is at vertex 1000000 of the source, which has no such vertex"),
         ([[0, -1]], "Landmark 1 is at vertex -1 of the target"),
