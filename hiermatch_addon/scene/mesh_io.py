@@ -18,7 +18,7 @@ from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     import bpy
     from numpy.typing import NDArray
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _topologies: list[dict[int, str]] = []
 """What `topology` has found within each `unedited`, the innermost last."""
 
-_TOPOLOGY_MODIFIERS = frozenset(
+TOPOLOGY_MODIFIERS = frozenset(
     {
         "ARRAY",
         "BEVEL",
@@ -198,11 +198,13 @@ def _shown_mesh(
 
 
 @contextmanager
-def without_other_vertices(context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> Iterator[None]:
-    """Have modifiers switched off that add or hide vertices, so that those that deform the own ones alone are seen."""
+def without_modifiers(
+    context: bpy.types.Context, objects: Sequence[bpy.types.Object], are_off: Callable[[str], bool]
+) -> Iterator[None]:
+    """Have modifiers of such types switched off as `are_off` tells, and on again in the end."""
     layer = view_layer_of(context)
     every = [modifier for obj in objects for modifier in obj.modifiers]
-    off = [one for one in every if one.type in _TOPOLOGY_MODIFIERS and one.show_viewport]
+    off = [one for one in every if are_off(one.type) and one.show_viewport]
     for modifier in off:
         modifier.show_viewport = False
     layer.update()
@@ -217,7 +219,7 @@ def without_other_vertices(context: bpy.types.Context, objects: Sequence[bpy.typ
 def _modifier_message(obj: bpy.types.Object, before: int, after: int) -> str:
     """Say which modifiers stand between the evaluated mesh and the one that is written to."""
     active = [modifier for modifier in obj.modifiers if modifier.show_viewport]
-    culprits = [modifier for modifier in active if modifier.type in _TOPOLOGY_MODIFIERS] or active
+    culprits = [modifier for modifier in active if modifier.type in TOPOLOGY_MODIFIERS] or active
     names = ", ".join(f'"{modifier.name}"' for modifier in culprits)
     return (
         f'The modifiers of "{obj.name}" change its vertices from {before} to {after} ({names}). '

@@ -10,11 +10,11 @@ from scipy.sparse import csr_array
 
 from ....engine import ClosestPoints, TriangleMesh
 from ...common.access import mesh_of, view_layer_of
-from ...scene.character import parts_of, read_surface, vertex_ranges
+from ...scene.character import parts_of, vertex_ranges
 from ...scene.deform_layer import write_weights
-from ...scene.mesh_io import read_mesh
 from ...scene.shape_key_io import KeySettings, add_keys, keys_of
 from ...scene.worn.fitted_copies import COVERED, ITEM, fitted_to
+from ...scene.worn.smoothing import seen_surface
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -74,9 +74,9 @@ def worn_already(
     context: bpy.types.Context, body: Side, made: Collection[bpy.types.Object]
 ) -> list[tuple[NDArray[np.float64], NDArray[np.int64]]]:
     """Return vertices and triangles of what a body wears beside what was made just now: its other copies in sight."""
-    layer, depsgraph = view_layer_of(context), context.evaluated_depsgraph_get()
+    layer = view_layer_of(context)
     worn = [obj for obj in fitted_to(body) if obj not in made and ITEM in cast("Any", obj)]
-    meshes = [read_mesh(obj, depsgraph, use_modifiers=False) for obj in worn if obj.visible_get(view_layer=layer)]
+    meshes = [seen_surface(context, obj) for obj in worn if obj.visible_get(view_layer=layer)]
     return [(mesh.vertices, mesh.triangles) for mesh in meshes]
 
 
@@ -90,7 +90,7 @@ def cover_body(
 
     It takes the place of what did so before, in either way.
     """
-    mesh = read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=False)
+    mesh = seen_surface(context, body)
     covered = covered_vertices(mesh, items)
     inwards = -_DEPTH * float(np.sqrt(mesh.area)) * mesh.vertex_normals * covered[:, None]
     for part, own in zip(parts_of(body), vertex_ranges(body), strict=True):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import bpy
@@ -17,6 +17,7 @@ from ...scene.armatures import find_armature, held_by
 from ...scene.deform_layer import read_weights
 from ...scene.mesh_io import position_digest, read_mesh, topology
 from ...scene.worn.garments import dressed_at_rest
+from ...scene.worn.smoothing import moved_mesh, smoothing_offsets
 from .item_weights import ItemWeights, in_columns
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from ....engine import FittedItem
     from ...scene.armatures import SourceRig
     from ...scene.character import Side
 
@@ -50,6 +52,8 @@ class ReadItem:
         In all its groups.
     held : bool
         Whether it hangs on one bone as a whole.
+    smoothing : (n, 3) array of float
+        How far Subdivision moves its vertices to where they are seen, and where `worn` has them.
     """
 
     name: str
@@ -59,10 +63,11 @@ class ReadItem:
     at_rest: bool
     weights: ItemWeights
     held: bool
+    smoothing: NDArray[np.float64]
 
 
 def read_item(
-    depsgraph: bpy.types.Depsgraph, item: bpy.types.Object, source: Side, rig: SourceRig | None, clearance: float
+    context: bpy.types.Context, item: bpy.types.Object, source: Side, rig: SourceRig | None, clearance: float
 ) -> ReadItem:
     """Read an item with what steers it, and its weights for the bones of the rig that moves the body.
 
@@ -71,7 +76,8 @@ def read_item(
     names = () if rig is None else rig.names
     stored: Any = cast("Any", item).hiermatch_wear
     held = _bone_of(item, source) in names
-    mesh = read_mesh(item, depsgraph, use_modifiers=False)
+    smoothing = smoothing_offsets(context, item)
+    mesh = moved_mesh(read_mesh(item, context.evaluated_depsgraph_get(), use_modifiers=False), smoothing)
     weights = read_weights(item)
     own = _own_weights(item, weights, source, names)
     in_bones = in_columns(own, names)
@@ -91,7 +97,13 @@ def read_item(
         margin=clearance,
     )
     state = topology(mesh_of(item)), position_digest(mesh_of(item))
-    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own, held)
+    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own, held, smoothing)
+
+
+def as_cage(fitted: FittedItem, item: ReadItem) -> FittedItem:
+    """Return what is to be written of a fitted item, such that its vertices are seen where they were fitted."""
+    back = np.einsum("nij,nj->ni", fitted.rotations * fitted.scales[:, None, None], item.smoothing)
+    return replace(fitted, positions=fitted.positions - back)
 
 
 def _bone_of(item: bpy.types.Object, source: Side) -> str:

@@ -16,12 +16,13 @@ from ...jobs.transfer import Transfer, TransferReport
 from ...scene.armatures import armature_of, find_armature, read_rig
 from ...scene.character import Character, parts_of, read_surface, whole
 from ...scene.deform_layer import check_weights_writable
-from ...scene.mesh_io import without_other_vertices
+from ...scene.mesh_io import TOPOLOGY_MODIFIERS, without_modifiers
 from ...scene.pair import named_object
 from ...scene.posing.before_after import show_after
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
 from ...scene.worn.garments import bound_items, check_item, left_behind
+from ...scene.worn.smoothing import moved_mesh, seen_surface, smoothing_offsets
 from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
@@ -32,7 +33,7 @@ from .fit_report import done, doubt
 from .followed_keys import apart_from, lacking, read_body_keys, write_followed
 from .item_bones import ItemBones, read_item_bones
 from .item_motion import ItemMotion
-from .item_reading import check_place, read_item, still_there
+from .item_reading import as_cage, check_place, read_item, still_there
 from .item_writing import check_key, write_copy, write_key
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class WearTransfer(Transfer):
         self._rig: SourceRig | None = None
         self._moving: ItemMotion | None = None
         self._keys: BodyKeys | None = None
-        self._shown: BodyKeys | None = None
+        self._moved = (np.zeros((0, 3)), np.zeros((0, 3)))
         self._fitted: list[FittedItem] = []
         self._motion: NDArray[np.float64] = np.eye(4)
         self._notes: list[str] = []
@@ -95,17 +96,19 @@ class WearTransfer(Transfer):
                 check_weights_writable(part)
                 check_keys_writable(part, [])
         self._rig = read_rig(source)
-        body, other = (read_surface(side, depsgraph, use_modifiers=False) for side in (source, target))
+        body, other = seen_surface(context, source), seen_surface(context, target)
         if isinstance(source, Character) and source.left_out:
             self._every = read_surface(whole(source), depsgraph, use_modifiers=False).triangles
+        self._moved = smoothing_offsets(context, source), smoothing_offsets(context, target)
         if settings.keys and settings.result == "OBJECT":
             self._keys = read_body_keys(context, target)
             self._notes.extend(self._keys.notes)
         else:
-            self._shown = lacking(read_body_keys(context, target, shown=True), *chosen)
+            keys = lacking(read_body_keys(context, target, shown=True), *chosen)
+            self._moved = self._moved[0], keys.shown_on(self._moved[1])
         shown = read_body_keys(context, source, shown=True)
         for obj in chosen:
-            read = read_item(depsgraph, obj, source, self._rig, settings.clearance)
+            read = read_item(context, obj, source, self._rig, settings.clearance)
             keys = apart_from(shown, body, obj, read.worn.mesh.vertices)
             worn_on = keys.names if read.at_rest else None
             if worn_on not in self._bodies:
@@ -167,9 +170,8 @@ class WearTransfer(Transfer):
             maps = there, pair.target_to_source
             wrapped = yield from within(wrap_steps(pair.source, pair.target, *maps), start, start + 0.3)
             registered, start = wrapped.positions, start + 0.3
-        if self._shown is not None and self._shown.settings:
-            pair, registered = _as_shown(pair, registered, self._shown)
-            passage = replace(passage, pair=pair)
+        pair, registered = _as_seen(pair, registered, *self._moved)
+        passage = replace(passage, pair=pair)
         self._motion = _overall_motion(pair.source, registered)
         self._fitted = [cast("Any", None)] * len(self._items)
         bones = None if self._rig is None else self._rig.weights
@@ -209,10 +211,11 @@ class WearTransfer(Transfer):
         for number, (item, obj, fitted) in enumerate(zip(self._items, items, self._fitted, strict=True)):
             if self._moving is None:
                 made = obj
-                write_key(obj, target, fitted)
+                write_key(obj, target, as_cage(fitted, item))
             else:
                 weights = self._moving.weights[number]
-                made, said = write_copy(context, obj, (source, target), fitted, weights=weights, motion=self._motion)
+                cage, bodies = as_cage(fitted, item), (source, target)
+                made, said = write_copy(context, obj, bodies, cage, weights=weights, motion=self._motion)
                 notes.extend(note for note in said if note not in notes)
                 if self._keys is not None and self._moving.followed:
                     followed = len(write_followed(made, target, self._keys, self._moving.followed[number]))
@@ -263,18 +266,21 @@ def _posed(context: bpy.types.Context, body: Side) -> NDArray[np.float64]:
     try:
         return read_surface(body, depsgraph, use_modifiers=True).vertices
     except ObjectError:
-        with without_other_vertices(context, parts_of(body)):
-            return read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=True).vertices
+        with without_modifiers(context, parts_of(body), TOPOLOGY_MODIFIERS.__contains__):
+            cage = read_surface(body, context.evaluated_depsgraph_get(), use_modifiers=True).vertices
+        return cage + smoothing_offsets(context, body, posed=True)
 
 
-def _as_shown(pair: MapPair, images: NDArray[np.float64], keys: BodyKeys) -> tuple[MapPair, NDArray[np.float64]]:
-    """Let a target be as shape keys show it, and with it what was laid onto it, (n, 3)."""
+def _as_seen(
+    pair: MapPair, images: NDArray[np.float64], at_source: NDArray[np.float64], at_target: NDArray[np.float64]
+) -> tuple[MapPair, NDArray[np.float64]]:
+    """Move both bodies to where they are seen, by (n, 3) and (m, 3), and with the target its images (n, 3)."""
     target = pair.target
-    vertices = keys.shown_on(target.vertices)
-    found = ClosestPoints(target).nearest(images)
-    moved = (vertices - target.vertices)[target.triangles[found.triangles]]
-    shown = TriangleMesh(vertices, target.triangles)
-    return replace(pair, target=shown), images + np.einsum("kc,kci->ki", found.barycentric, moved)
+    if at_target.any():
+        found = ClosestPoints(target).nearest(images)
+        moved = at_target[target.triangles[found.triangles]]
+        images = images + np.einsum("kc,kci->ki", found.barycentric, moved)
+    return replace(pair, source=moved_mesh(pair.source, at_source), target=moved_mesh(target, at_target)), images
 
 
 def _overall_motion(source: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
+import pytest
+from mathutils import Vector
 
 from tests.addon.garments import evaluated, fitted, in_world, wear
 
@@ -75,3 +77,36 @@ def test_what_modifiers_still_use_is_told(dressed_pair):
     assert wear("Shirt") == {"FINISHED"}
     assert fitted("Shirt").modifiers["Half"].mirror_object.name == "Handle"
     assert 'Modifiers of "Shirt on Target" still use "Handle", as those of the original do.' in notes()
+
+
+def above(obj, body):
+    """How far the vertices of an object are from a body, both as they are seen, on average."""
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    into = body.matrix_world.inverted()
+    count = len(obj.data.vertices)
+    places = [into @ Vector(place) for place in evaluated(obj)[:count]]
+    return np.mean([(place - body.closest_point_on_mesh(place, depsgraph=depsgraph)[1]).length for place in places])
+
+
+@pytest.mark.parametrize("smoothed", [["Source"], ["Target"], ["Source", "Target", "Shirt"]])
+def test_clothes_are_as_far_from_bodies_as_both_are_seen(smoothed, dressed_pair):
+    source, target, shirt, _ = dressed_pair
+    away = above(shirt, source)
+    assert wear("Shirt") == {"FINISHED"}
+    grown = above(fitted("Shirt"), target) / away
+    for name in smoothed:
+        bpy.data.objects[name].modifiers.new("Smooth", "SUBSURF").levels = 2
+    away = above(shirt, source)
+    assert wear("Shirt") == {"FINISHED"}
+    assert above(fitted("Shirt"), target) / away == pytest.approx(grown, rel=0.1)
+
+
+def test_a_shape_key_fits_what_is_seen_of_an_item(dressed_pair):
+    _, target, shirt, _ = dressed_pair
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    away = above(shirt, target)
+    shirt.modifiers.new("Smooth", "SUBSURF").levels = 2
+    for name in ("Source", "Target"):
+        bpy.data.objects[name].modifiers.new("Smooth", "SUBSURF").levels = 2
+    assert wear("Shirt", wear_result="KEY") == {"FINISHED"}
+    assert above(shirt, target) == pytest.approx(away, rel=0.1)

@@ -48,7 +48,7 @@ def test_a_posed_body_may_have_modifiers_that_add_and_hide_vertices(dressed_pair
     bpy.context.view_layer.update()
     assert wear("Shirt", wear_fit_rig=False) == {"FINISHED"}
     expected = in_world(fitted("Shirt"))
-    source.modifiers.new("Smooth", "SUBSURF").levels = 1
+    source.modifiers.new("Smooth", "SUBSURF").subdivision_type = "SIMPLE"
     mask = source.modifiers.new("Hidden", "MASK")
     mask.vertex_group = source.vertex_groups.new(name="nothing").name
     bpy.context.view_layer.update()
