@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import tempfile
+from os.path import realpath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -123,7 +124,11 @@ def _select(side: Side, along: Sequence[bpy.types.Object]) -> None:
 
 
 def _export(path: Path, *, moving: bool) -> None:
-    """Write what is selected into a folder beside the file, and move all that was written to its place."""
+    """Write what is selected into a folder beside the file, and move all that was written to its place.
+
+    Of a symbolic link that is where it leads to.
+    """
+    path = Path(realpath(path))
     name, options = _EXPORTERS[path.suffix.lower()]
     options = options | (_MOVING[path.suffix.lower()] if moving else {})
     if path.suffix.lower() == ".gltf":  # its textures are files, which others in the same folder may have as well

@@ -100,3 +100,18 @@ def test_all_kinds_of_files_come_back(suffix, tmp_path):
     assert not notes
     assert len(back.data.polygons) >= faces  # some kinds know triangles only
     assert back.dimensions.length == pytest.approx(length, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["body.blend", "body.obj", "body.glb", "body.gltf"])
+def test_a_link_stays_one_and_what_it_leads_to_is_written(name, tmp_path):
+    (tmp_path / "published").mkdir()
+    kept = tmp_path / "published" / name
+    kept.write_bytes(b"before")
+    link = tmp_path / name
+    link.symlink_to(kept)
+    save(link, add_blob("Body"))
+    assert link.is_symlink()
+    (back,), _ = load_meshes([MeshArgument(link)])
+    assert len(back.data.polygons) > 0
+    assert kept.read_bytes() != b"before"
+    assert set(tmp_path.iterdir()) == {kept.parent, link}
