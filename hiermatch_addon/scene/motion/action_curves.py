@@ -29,7 +29,10 @@ _AS_LARGE = 0.01
 """By what part a bone may be larger or smaller and still count as large as it is: importers round more."""
 
 MADE_FOR = "hiermatch_made_for"
-"""Custom property of the actions that are made here: the name of the armature object that they are for."""
+"""Custom property of the actions that are made here: the name of the armature object that they are for.
+
+On that object it is what this was called when one was made for it last.
+"""
 
 
 def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
@@ -235,7 +238,7 @@ class CurveMaker:
     ) -> None:
         made: Any = bpy.data.actions.new(before) if isinstance(before, str) else before
         made.use_fake_user = True
-        made[MADE_FOR] = armature.name
+        made[MADE_FOR] = cast("Any", armature)[MADE_FOR] = armature.name
         self.action = made
         self._bag = None
         if hasattr(made, "slots"):

@@ -50,13 +50,15 @@ def mark_carried(action: bpy.types.Action, model: bpy.types.Action | None) -> No
 def carried_before(armature: bpy.types.Object, model: bpy.types.Action | None) -> bpy.types.Action | None:
     """Find the action that was made for an armature from another action, or as its rest pose, and nothing else uses.
 
-    One that was renamed is the user's own.  A rig that was renamed since still plays what was made for it.
+    One that was renamed is the user's own.  A rig that was renamed since is marked with its former name, or still plays
+    what was made for it.
     """
-    played = playing(armature)
+    played, former = playing(armature), cast("Any", armature).get(MADE_FOR)
     for action in bpy.data.actions:
         mine: Any = action
         owner = mine.get(MADE_FOR, "")
-        is_own = owner == armature.name or (owner not in bpy.data.objects and action.name in played)
+        was_own = owner not in bpy.data.objects and (owner == former or action.name in played)
+        is_own = owner == armature.name or was_own
         found = is_own and mine.get(_MODEL) == _name(model)
         if found and mine.get(_NAMED) == action.name and action.library is None and not users_beside(action, armature):
             return action

@@ -62,22 +62,22 @@ def test_what_was_carried_before_is_made_anew_in_its_place():
     assert not bpy.context.scene.hiermatch_retarget.report.notes
 
 
-@pytest.mark.parametrize("strips", [False, True])
-def test_a_rig_that_was_renamed_since_has_its_action_made_anew(strips):
+@pytest.mark.parametrize(("strips", "assign"), [(False, True), (True, False), (False, False)])
+def test_a_rig_that_was_renamed_since_has_its_action_made_anew(strips, assign):
     source, _ = add_person("A")
     target, _ = add_person("B", "renamed")
     other, _ = add_person("C", "renamed")
     add_action(source)
     source.animation_data.nla_tracks.new().strips.new("Wave", 30, bpy.data.actions["Wave"])
-    carry(source="A", target="B", action="Wave", strips=strips, assign=not strips)
+    carry(source="A", target="B", action="Wave", strips=strips, assign=assign)
     target.name = "Giant"
     before = curves_values(bpy.data.actions["Wave B"])
-    carry(source="A", target="Giant", action="Wave", strips=strips, assign=not strips, keying="ALL")
+    carry(source="A", target="Giant", action="Wave", strips=strips, assign=assign, keying="ALL")
     assert set(bpy.data.actions.keys()) == {"Wave", "Wave B"}
     assert curves_values(bpy.data.actions["Wave B"]) != before
     carry(source="A", target="C", action="Wave")
     assert other.animation_data.action.name == "Wave C"
-    carry(source="A", target="Giant", action="Wave", strips=strips, assign=not strips)
+    carry(source="A", target="Giant", action="Wave", strips=strips, assign=assign)
     assert set(bpy.data.actions.keys()) == {"Wave", "Wave B", "Wave C"}
 
 
