@@ -8,14 +8,18 @@ from typing import TYPE_CHECKING, Any, cast
 import bpy
 
 from ..armatures import pose_of
-from .action_curves import played_action, rotation_channel
+from .action_curves import every_curve, played_action, rotation_channel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
 def key_automatically(
-    scene: bpy.types.Scene, armature: bpy.types.Object, bones: Iterable[str], placed: Iterable[str]
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    bones: Iterable[str],
+    placed: Iterable[str],
+    switches: Iterable[tuple[str, str]] = (),
 ) -> bool:
     """Set keys for bones at the frame of the moment if Auto Keying is on, as its settings and the preferences say.
 
@@ -29,6 +33,8 @@ def key_automatically(
         Those that were turned.
     placed : iterable of str
         Those that were moved.
+    switches : iterable of tuple of str
+        Bones with names of their properties that were set; as in Blender, only those get keys that have some.
 
     Returns
     -------
@@ -45,6 +51,9 @@ def key_automatically(
     keying_set = scene.keying_sets_all.active if tools.use_keyframe_insert_keyingset else None
     wanted = [(name, rotation_channel(pose[name].rotation_mode)) for name in bones]
     wanted += [(name, "location") for name in placed]
+    keyed = set() if action is None else {curve.data_path for curve in every_curve(action)}
+    properties = [(bone, f'["{bpy.utils.escape_identifier(name)}"]') for bone, name in switches]
+    wanted += [(bone, channel) for bone, channel in properties if _path(bone, channel) in keyed]
     if keying_set is not None and keying_set.bl_idname == "Available":
         options.add("INSERTKEY_AVAILABLE")
     if action is None and options & {"INSERTKEY_AVAILABLE", "INSERTKEY_REPLACE"}:
@@ -70,8 +79,13 @@ def _options(tools: Any) -> set[str]:  # noqa: ANN401 - settings that some versi
 def _holds(keying_set: Any, armature: bpy.types.Object, bone: str, channel: str) -> bool:  # noqa: ANN401 - as above
     """Tell whether a keying set, one of Blender's own or the user's, holds a channel of a bone."""
     if keying_set.is_path_absolute:
-        wanted = f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{channel}'
-        return any(path.id == armature and path.data_path == wanted for path in keying_set.paths)
+        return any(path.id == armature and path.data_path == _path(bone, channel) for path in keying_set.paths)
     name = keying_set.bl_idname.rpartition("_")[2]
     everything = name in {"Available", "WholeCharacter", "WholeCharacterSelected"}
-    return everything or ("Delta" not in name and ("Loc" if channel == "location" else "Rot") in name)
+    kind = "Loc" if channel == "location" else "Rot"
+    return everything or (channel[0] != "[" and "Delta" not in name and kind in name)
+
+
+def _path(bone: str, channel: str) -> str:
+    """Return the path of a channel of a bone, or of a property of it, which is in brackets."""
+    return f'pose.bones["{bpy.utils.escape_identifier(bone)}"]' + (channel if channel[0] == "[" else f".{channel}")

@@ -178,6 +178,7 @@ class MotionJob(SteppedJob):
             notes: list[str] = []
             made = {action.name: self._write(rig, action, notes, alone=len(actions) == 1) for action in actions}
             steered = self._steered.get(rig.session_uid)
+            remarks = () if steered is None else steered.finished(rig)
             if not actions:
                 notes += _set_pose(cast("bpy.types.Scene", context.scene), rig, self._poses[rig.session_uid], steered)
             metas = copy_strips(source, rig, made) if self._plan.strips else []
@@ -186,7 +187,6 @@ class MotionJob(SteppedJob):
             moved = [row.target for row in rows_of(cast("bpy.types.Scene", context.scene), source, rig) if row.source]
             if steered is not None:
                 moved = [name for name in moved if name in steered.controls.lost]
-            remarks = () if steered is None else steered.finished(rig)
             played = not actions or (self._plan.assign and len(actions) == 1)
             notes += _notes(source, rig, actions, moved, played=played and steered is None)
             notes += self._left_out(cast("bpy.types.Scene", context.scene), source, rig)
@@ -448,7 +448,8 @@ def _set_pose(
         placed = [*(name for name in placed if name in bases), *steered.placed]
     set_pose(rig, bases)
     notes = []
-    if not key_automatically(scene, rig, bases, dict.fromkeys(placed)):
+    switches = () if steered is None else steered.controls.switches
+    if not key_automatically(scene, rig, bases, dict.fromkeys(placed), [(one.bone, one.name) for one in switches]):
         notes.append(
             f'Auto Keying set no keys: "{rig.name}" plays an action of another file. Make it local, or let it play '
             "another one."

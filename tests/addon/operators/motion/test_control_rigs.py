@@ -114,6 +114,24 @@ def test_a_pose_goes_to_the_controls(monkeypatch):
     assert found <= set(numbers.values())
 
 
+@pytest.mark.parametrize("is_keyed", [True, False])
+def test_switches_that_have_keys_get_one_with_the_pose(is_keyed, monkeypatch):
+    source, _ = add_person("A")
+    target, _ = add_person("B")
+    add_controls(target)
+    goal, scene = target.pose.bones["goal"], bpy.context.scene
+    goal.keyframe_insert('["by goal"]' if is_keyed else "location", frame=1)
+    scene.frame_set(10)
+    scene.tool_settings.use_keyframe_insert_auto = True
+    monkeypatch.setattr(auto_keying, "_options", lambda _tools: set())
+    source.pose.bones["forearm.R"].rotation_quaternion = (0.9, 0.1, 0.1, 0.4)
+    bpy.context.view_layer.update()
+    assert ops.retarget_pose(source="A", target="B") == {"FINISHED"}
+    for frame, value in ((1, float(is_keyed)), (10, 0.0)):
+        scene.frame_set(frame)
+        assert goal["by goal"] == value
+
+
 def test_bones_whose_controls_are_locked_are_named():
     source, _ = add_person("A")
     target, _ = add_person("B")
