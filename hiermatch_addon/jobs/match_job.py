@@ -30,6 +30,7 @@ from ..scene.armatures import held_vertices, read_rig, without_held
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, vertex_count
 from ..scene.pair import check_pair
 from ..storage import writing
+from ..storage.answer_writing import write_answer
 from ..storage.contents import contents_steps
 from ..storage.excluded_regions import excluded_vertices
 from ..storage.landmarks import find_landmarks, landmark_array
@@ -373,10 +374,7 @@ class MatchJob(SteppedJob):
                 raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
         names, prefix = (objects[0].name, objects[1].name), self._options.prefix
         stored, prepared = self._stored(self._found, names), self._prepared
-        for obj, content, kept in zip(objects, prepared.contents, stored.to_plain(), strict=True):
-            writing.check_names(obj, content, prefix)
-            content.keep.update(kept)
-        writing.write(list(zip(objects, prepared.contents, strict=True)), prefix)
+        write_answer((objects[0], objects[1]), stored, prepared.contents, prefix, show=True)
         return Outcome(*names, prepared.result, prepared.maps, stored, time.perf_counter() - self._start)
 
     def stored(self) -> StoredMatch:

@@ -15,6 +15,7 @@ from ..scene.character import read_surface
 from ..scene.pair import check_pair
 from ..storage.answer_writing import following_steps, mapped_contents_steps
 from ..storage.excluded_regions import excluded_vertices
+from ..storage.halves import check_fresh
 from ..storage.landmarks import find_landmarks, landmark_array
 from ..storage.stored_match import StoredMatch
 from ..storage.vertex_maps import StoredMaps, map_name, read_all_maps
@@ -56,9 +57,7 @@ class RefineJob(RewritingJob):
         started = time.perf_counter()
         depsgraph = context.evaluated_depsgraph_get()
         check_pair(view_layer_of(context), halves[0].obj, halves[1].obj)
-        for half in halves:
-            if stale := half.staleness():
-                raise ObjectError(stale)
+        check_fresh(halves)
         if halves[0].role != "source":
             halves, exclude = (halves[1], halves[0]), (exclude[1], exclude[0])
         first, second = halves
