@@ -6,7 +6,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import bpy
 
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 MIRRORED = "it was mirrored"
 """Why a match is out of date one of whose meshes has been turned over by a negative scale since."""
+
+_NEEDED: Final = frozenset({"key", "role", "names", "topology", "points"})
+_NEEDED_OF_SOURCE: Final = frozenset({"answers", "written", "notes"})
+"""What is kept of every match on both sides, and on that of its source; without it, it is of a later version."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +61,9 @@ class Half:
 
     @property
     def key(self) -> str:
-        """What both sides of the match carry; empty if the object carries none."""
-        return str(self._read.get("key", ""))
+        """What both sides of the match carry; empty if the object carries none that this version can read."""
+        needed = _NEEDED | _NEEDED_OF_SOURCE if self._read.get("role") == "source" else _NEEDED
+        return str(self._read["key"]) if needed.issubset(self._read.keys()) else ""
 
     @property
     def role(self) -> str:
@@ -87,7 +92,7 @@ class Half:
 
     def is_of(self, key: str, role: str) -> bool:
         """Return whether it carries that side of a match."""
-        return self._read.get("key") == key and self.role == role
+        return self.key == key and self.role == role
 
     def has_same_faces(self) -> bool:
         """Return whether stored vertex numbers still mean what they meant."""

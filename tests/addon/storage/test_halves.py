@@ -7,6 +7,8 @@ from functools import partial
 from timeit import repeat
 
 import bpy
+import pytest
+from hiermatch.hiermatch_addon.properties.freshness import refresh
 from hiermatch.hiermatch_addon.scene.character import joined, parts_of
 from hiermatch.hiermatch_addon.storage.halves import find_carriers, find_common, find_half, is_mirrored
 from hiermatch.hiermatch_addon.storage.writing import MARKER
@@ -44,3 +46,22 @@ def test_renamed_parts_of_a_character_keep_their_order_and_their_match():
     bpy.ops.hiermatch.clear(object="Body + A Wig")
     assert parts_of(joined("Hero", [body, hair])) == (hair, body)
     assert not body.data.keys()
+
+
+@pytest.mark.parametrize(
+    ("side", "lacking"),
+    [(side, field) for side in ("Source", "Target") for field in ("key", "role", "names", "topology", "points")]
+    + [("Source", field) for field in ("answers", "written", "notes")],
+)
+def test_what_lacks_what_this_version_needs_is_no_match(lacking, side, dense_pair):
+    """As a later version may keep it."""
+    source, target = dense_pair
+    del bpy.data.objects[side].data[MARKER]["HM"]["kept"][lacking]
+    refresh(bpy.context.scene)
+    assert "out of date" in bpy.context.scene.hiermatch.summary.stale
+    assert not find_common(source, target)
+    for run in (bpy.ops.hiermatch.refine, bpy.ops.hiermatch.flip, partial(bpy.ops.hiermatch.show, view="CHECKER")):
+        with pytest.raises(RuntimeError, match="match"):
+            run()
+    assert bpy.ops.hiermatch.match(source="Source", target="Target", **QUICK) == {"FINISHED"}
+    assert find_common(source, target)
