@@ -22,7 +22,7 @@ from ...scene.posing.before_after import show_after
 from ...scene.shape_key_io import check_keys_writable
 from ...scene.worn.fitted_copies import as_fitted
 from ...scene.worn.garments import bound_items, check_item, left_behind
-from ...scene.worn.smoothing import moved_mesh, seen_surface, smoothing_offsets
+from ...scene.worn.smoothing import moved_mesh, smoothing_offsets
 from ..options.rig import RigSettings
 from ..options.weights import WeightSettings
 from ..rig import RigTransfer
@@ -85,7 +85,6 @@ class WearTransfer(Transfer):
         """Read all items, and make sure that they can be fitted."""
         settings = self._settings
         chosen = self._chosen(context, source, target)
-        depsgraph = context.evaluated_depsgraph_get()
         self._ends = [item.name for item in chosen if item in parts_of(source)]
         for item in chosen:
             check_item(context, item, source, target, chosen, writable=settings.result == "KEY")
@@ -96,10 +95,14 @@ class WearTransfer(Transfer):
                 check_weights_writable(part)
                 check_keys_writable(part, [])
         self._rig = read_rig(source)
-        body, other = seen_surface(context, source), seen_surface(context, target)
+        self._moved = smoothing_offsets(context, source), smoothing_offsets(context, target)
+        depsgraph = context.evaluated_depsgraph_get()
+        body, other = (
+            moved_mesh(read_surface(side, depsgraph, use_modifiers=False), moved)
+            for side, moved in zip((source, target), self._moved, strict=True)
+        )
         if isinstance(source, Character) and source.left_out:
             self._every = read_surface(whole(source), depsgraph, use_modifiers=False).triangles
-        self._moved = smoothing_offsets(context, source), smoothing_offsets(context, target)
         if settings.keys and settings.result == "OBJECT":
             self._keys = read_body_keys(context, target)
             self._notes.extend(self._keys.notes)
