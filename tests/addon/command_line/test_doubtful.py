@@ -30,7 +30,7 @@ def doubtful(dense_pair, tmp_path, monkeypatch):
 def test_it_fails_with_a_sentence_unless_it_is_accepted(doubtful, command, tmp_path, capsys):
     output, report = tmp_path / "out.blend", tmp_path / "report.json"
     arguments = [command[0], *doubtful, *command[1:], "--no-refine", f"--output={output}", f"--report={report}"]
-    arguments.append("--least-confidence=1.5")
+    arguments.append("--least-confidence=1")
     assert main(arguments) == 1
     said = capsys.readouterr().err
     assert 'The match of "Source" and "Target" is doubtful' in said

@@ -73,7 +73,7 @@ def test_symmetry_tells_of_a_mesh_that_is_hardly_symmetric(tmp_path, monkeypatch
     assert '"Body" is hardly symmetric.' in capsys.readouterr().err
     assert json.loads(report.read_text())["notes"] == ['"Body" is hardly symmetric.']
     output.unlink()
-    assert main([*wanted, "--strict", "--least-confidence=1.5"]) == 3
+    assert main([*wanted, "--strict", "--least-confidence=1"]) == 3
     assert json.loads(report.read_text())["doubtful"]
     assert output.exists()
 
