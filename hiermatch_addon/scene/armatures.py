@@ -131,7 +131,10 @@ def moving_armatures(side: Side) -> list[bpy.types.Object]:
 
 
 def read_skeleton(armature: bpy.types.Object, space: NDArray[np.float64] | None = None) -> Skeleton:
-    """Read the bones of an armature object as they are at rest, in world space, or as a matrix (4, 4) places them."""
+    """Read the bones of an armature object as they are at rest, in world space, or as a matrix (4, 4) places them.
+
+    Bones of a length that says nothing end where others hang on them.
+    """
     bones = armature_of(armature).bones
     numbers = {bone.name: number for number, bone in enumerate(bones)}
     parents = np.array([-1 if bone.parent is None else numbers[bone.parent.name] for bone in bones], np.int64)
@@ -141,7 +144,7 @@ def read_skeleton(armature: bpy.types.Object, space: NDArray[np.float64] | None 
         return np.array(points, np.float64).reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]
 
     heads, tails = ([getattr(bone, end) for bone in bones] for end in ("head_local", "tail_local"))
-    return Skeleton(parents, placed(heads), placed(tails))
+    return Skeleton(parents, placed(heads), placed(tails)).with_likely_tails()
 
 
 def bone_normals(armature: bpy.types.Object) -> NDArray[np.float64]:

@@ -75,6 +75,22 @@ def test_an_armature_that_was_replaced_twice_means_the_last_one(deleted):
     assert {successor(rig) for rig in rigs} == {old}
 
 
+def test_bones_that_an_importer_made_a_metre_long_end_where_others_hang_on_them():
+    """Blender's importer of FBX makes them so under an armature that is scaled by 100."""
+    armature, _ = add_person("A")
+    before = read_skeleton(armature)
+    bpy.context.view_layer.objects.active = armature
+    bpy.ops.object.mode_set(mode="EDIT")
+    for bone in armature.data.edit_bones:
+        bone.length = 1.0
+    bpy.ops.object.mode_set(mode="OBJECT")
+    found = read_skeleton(armature)
+    np.testing.assert_allclose(found.heads, before.heads, atol=1e-6)
+    for bone, length in enumerate(np.linalg.norm(found.axes, axis=1)):
+        ways = np.linalg.norm(found.heads[found.children(bone)] - found.heads[bone], axis=1)
+        assert np.isclose(length, ways.max()) if len(ways) else length < 0.2
+
+
 def test_a_rig_is_read_as_it_was_made():
     obj, armature = add_rigged()
     rig = read_rig(obj)

@@ -52,3 +52,22 @@ def test_subtrees_hold_all_that_hangs_on_a_bone():
     assert all(
         set(tree.above(bone)) == {other for other in range(4) if bone in found[other]} - {bone} for bone in range(4)
     )
+
+
+@pytest.mark.parametrize("unit", [0.01, 1.0, 100.0])
+def test_bones_that_are_all_of_one_length_end_where_others_hang_on_them(unit):
+    """An importer gives the bones of a leg a metre each."""
+    heads = unit * np.array([[0, 0, 1.0], [0, 0, 0.9], [0, 0, 0.5], [0, 0, 0.1], [0, 0, 0.1], [0.5, 0, 0.1]])
+    along = np.array([[0, 0, -1.0], [0, 0, -1], [0, 0.6, -0.8], [0, 1, 0], [0, 1, 0], [1, 0, 0]])
+    parents = np.array([-1, 0, 1, 2, 3, -1])
+    found = Skeleton(parents, heads, heads + unit * along).with_likely_tails()
+    assert np.allclose(found.axes, unit * along * np.array([[0.1], [0.4], [0.4], [0.2], [0.0009], [0.0009]]))
+
+
+def test_bones_of_lengths_that_mean_something_stay_as_they_are():
+    """A root that stands out, a toe, and a leg that ends in its tail."""
+    heads = np.array([[0, 0, 0.0], [0, 0, 1], [0, 0, 0.5], [0, 0, 0.1], [0, 0.2, 0.0]])
+    tails = np.array([[0, 0, 2.0], [0, 0, 0.5], [0, 0, 0.1], [0, 0.2, 0.0], [0, 5.0, 0.0]])
+    bones = Skeleton(np.array([-1, 0, 1, 2, 3]), heads, tails)
+    assert bones.with_likely_tails() is bones
+    assert skeleton([]).with_likely_tails().tails.shape == (0, 3)
