@@ -64,8 +64,14 @@ class BoneChannels:
         return cls(bone.name, "location", places, _LOCATION * float(np.ptp(tree.joints, axis=0).max()))
 
 
-def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[BoneChannels]:
-    """Make the channels of an armature's bones of its motion, in the rotation modes that the bones have."""
+def bone_channels(
+    armature: bpy.types.Object, found: TransferredMotion, keys: ActionKeys, movers: dict[str, Movers]
+) -> list[BoneChannels]:
+    """Make the channels of an armature's bones of its motion, in the rotation modes that the bones have.
+
+    If the source has keys of places, bones get them that stay where they are, too: another action may have moved them.
+    """
+    said = {name for name, each in movers.items() if any((one, "location") in keys.curves for one in each.turning)}
     local = local_poses(found.motion, armature)
     tree = own_skeleton(armature)
     channels = []
@@ -74,6 +80,8 @@ def bone_channels(armature: bpy.types.Object, found: TransferredMotion) -> list[
             channels.append(BoneChannels.of_turns(bone, local.rotations[:, number]))
         if found.placed[number]:
             channels.append(BoneChannels.of_places(bone, local.locations[:, number], tree))
+        elif bone.name in said and not bone.bone.use_connect:
+            channels.append(BoneChannels.of_places(bone, np.zeros((len(found.motion), 3)), tree))
     return channels
 
 

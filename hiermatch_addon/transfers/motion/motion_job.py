@@ -310,7 +310,7 @@ class MotionJob(SteppedJob):
             start, end = (0.5 + 0.5 * (number + step) / count for step in range(2))
             found = yield from within(_transfer_steps(motion, turn, pairing, link, settings, times=times), start, end)
             self._keep_fixed(link, found)
-            channels = bone_channels(found_again(link), found)
+            channels = bone_channels(found_again(link), found, keys, movers[number])
             if _number(link) not in self._steered:
                 steered = yield from steered_steps(link, found)
                 if steered is not None:

@@ -6,6 +6,7 @@ from math import radians
 import bpy
 import numpy as np
 import pytest
+from hiermatch.hiermatch_addon.scene.motion.action_curves import assign_action
 from hiermatch.hiermatch_addon.transfers.motion import motion_job
 from mathutils import Matrix
 
@@ -223,6 +224,26 @@ def test_all_actions_go_to_several_targets_and_strips_are_copied():
         (copy,) = target.animation_data.nla_tracks[0].strips
         assert copy.action.name == f"Wave {target.name}"
         assert (copy.frame_start, copy.repeat) == (30, 2)
+
+
+def test_an_action_does_not_leave_bones_where_another_one_had_them():
+    """Sources of FBX have keys of all places in all actions: one moves an arm away, and the next one brings it back."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    moved = target.pose.bones[made.names[made.origins.index(frozenset({"upper_arm.L"}))]]
+    for name, far in (("Reach", 0.1), ("Wave", 0.0)):
+        add_action(source, name)
+        for frame, part in ((1, 0), (21, 1)):
+            source.pose.bones["upper_arm.L"].location = (0, part * far, 0)
+            source.pose.bones["upper_arm.L"].keyframe_insert("location", frame=frame)
+        bpy.data.actions[name].use_fake_user = True
+    assert carry(source="A", target="B", actions="ALL") == {"FINISHED"}
+    for name, far in (("Reach", 0.1), ("Wave", 0.0)):
+        assign_action(source, bpy.data.actions[name])
+        assign_action(target, bpy.data.actions[f"{name} B"])
+        bpy.context.scene.frame_set(21)
+        assert np.isclose(moved.location.length, far, atol=1e-3)
+        assert worst(source, target, (1, 11, 21)) < 0.01
 
 
 @pytest.mark.parametrize("operator", [carry, pose])
