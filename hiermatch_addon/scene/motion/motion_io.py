@@ -10,6 +10,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ....engine import Motion, motion_of_matrices, posed_motion, rotation_matrices
+from ...common.long_names import LONGEST_ID, shortened
 from ..armatures import armature_of, pose_of
 from .action_curves import (
     CurveMaker,
@@ -228,7 +229,7 @@ def write_action(
         What is to be said of the one that was made before.
     """
     played, (before, notes) = _left_by(armature), to_be_replaced(armature, model)
-    maker = CurveMaker(before or f"{model.name} {armature.name}", armature, model)
+    maker = CurveMaker(before or shortened(model.name, LONGEST_ID, f" {armature.name}"), armature, model)
     for channel in keys:
         for index in range(channel.values.shape[1]):
             _write_curve(maker.curve(channel.bone, channel.channel, index), channel, index)

@@ -226,6 +226,18 @@ def test_all_actions_go_to_several_targets_and_strips_are_copied():
         assert (copy.frame_start, copy.repeat) == (30, 2)
 
 
+def test_of_a_long_name_so_much_is_kept_that_the_rigs_name_fits_behind_it():
+    """Actions from FBX are called "Armature|Armature|Walk" and longer."""
+    source, _ = add_person("A")
+    target, _ = add_person("B", "renamed")
+    action = add_action(source)
+    action.name = 60 * "Rig|Walk"
+    assert carry(source="A", target="B") == {"FINISHED"}
+    name = target.animation_data.action.name
+    assert name.endswith(" B")
+    assert name[:50] == action.name[:50]
+
+
 def test_an_action_does_not_leave_bones_where_another_one_had_them():
     """Sources of FBX have keys of all places in all actions: one moves an arm away, and the next one brings it back."""
     source, _ = add_person("A")
