@@ -119,14 +119,13 @@ def _name(model: bpy.types.Action | None) -> str:
 
 
 def _state(action: bpy.types.Action) -> str:
-    """Describe all keys, curves and settings of an action."""
+    """Describe all keys, curves and settings of an action; one slot on one strip is what Blender 4.4 makes of none."""
     digest = hashlib.blake2b(digest_size=16)
     layers: Sequence[Any] = getattr(action, "layers", ())
-    strips = [len(layer.strips) for layer in layers]
-    slots: Sequence[Any] = getattr(action, "slots", ())
+    parts = [len(layer.strips) for layer in layers], len(getattr(action, "slots", ()))
     settings = [getattr(action, name) for name in _RANGE if action.use_frame_range or name == "use_frame_range"]
     markers = [(marker.name, marker.frame) for marker in action.pose_markers]
-    digest.update(f"{strips} {len(slots)} {settings} {markers}\0".encode())
+    digest.update(f"{parts if parts != ([1], 1) else ([], 0)} {settings} {markers}\0".encode())
     for curve in every_curve(action):
         said = curve.data_path, curve.array_index, curve.mute, curve.extrapolation, len(curve.keyframe_points)
         digest.update(f"{said}\0".encode())

@@ -54,6 +54,27 @@ def test_a_name_that_is_too_long_is_cut_before_what_is_said_of_it(carried, lette
     assert aside.startswith(long[:100])
 
 
+class OldAction(dict):
+    """An action as Blender 4.3 has it: with curves, but neither slots nor layers."""
+
+    def __init__(self, action):
+        super().__init__()
+        self.fcurves = list(curves_of(action).values())
+        for name in ("name", "pose_markers", "use_frame_range", "frame_start", "frame_end", "use_cyclic"):
+            setattr(self, name, getattr(action, name))
+
+
+def test_one_that_an_older_blender_wrote_is_as_it_was(carried):
+    _, model, action = carried
+    old = OldAction(action)
+    mark_carried(old, model)
+    for name, said in old.items():
+        action[name] = said
+    assert not was_edited(action)
+    action.slots.new("OBJECT", "Other")
+    assert was_edited(action)
+
+
 def test_edits_are_seen_and_what_is_none_is_not(carried):
     rig, _model, action = carried
     curve = next(iter(curves_of(action).values()))
