@@ -20,6 +20,12 @@ _NEAR_GROUND = 0.15
 _SHORTEST = 0.1
 """Least length of a limb, in units of the largest extent of the rig: what is shorter is a finger or an ear."""
 
+_TIP = 0.75
+"""Part of the length before it that the last bone of a limb counts at most when the two longest parts are chosen.
+
+FBX and glTF know no ends of bones: importers make a foot without toes as long as its shin.
+"""
+
 Joint = tuple[int, bool]
 """A bone, and whether its tail is meant and not its head."""
 
@@ -122,6 +128,7 @@ def limbs_of(segments: Segments, source: Skeleton, target: Skeleton, ups: Floats
         if not pairs:
             continue
         shares = lengths / np.maximum(np.array(extents), TINY)[:, None]
+        shares[:, 0] = np.minimum(shares[:, 0], _TIP * shares[:, 1])
         low = max(pairs, key=lambda number: (shares[:, number] + shares[:, number + 1]).sum())
         last = min(low, 2)
         long = lengths[:, last : low + 2].sum(axis=1)

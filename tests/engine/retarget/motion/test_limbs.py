@@ -65,3 +65,15 @@ def test_the_two_parts_of_a_limb_do_not_depend_on_units(unit):
     numbers = np.arange(len(parents))
     limbs = limbs_of(Segments.of(numbers, numbers, source, target), source, target, UPS)
     assert sorted(limb.parts for limb in limbs) == [(2, 3), (6, 7)]
+
+
+def test_a_foot_that_an_importer_made_as_long_as_the_shin_is_no_part_of_the_leg():
+    joints = [(0.0, 0, 1.0)]
+    for side in (-0.1, 0.1):
+        joints += [(side, 0, 0.95), (side, -0.05, 0.5), (side, 0, 0.02)]
+    heads, parents = np.array(joints), np.array([-1, 0, 1, 2, 0, 4, 5])
+    tails = heads + np.array([0, 0, 0.1])
+    tails[[1, 2, 4, 5]], tails[[3, 6]] = heads[[2, 3, 5, 6]], heads[[3, 6]] + np.array([0, -0.48, 0])
+    bones, numbers = Skeleton(parents, heads, tails), np.arange(7)
+    limbs = limbs_of(Segments.of(numbers, numbers, bones, bones), bones, bones, UPS)
+    assert sorted((limb.parts, limb.foot) for limb in limbs) == [((1, 2), True), ((4, 5), True)]
