@@ -99,7 +99,8 @@ def save(
 def _select(side: Side, along: Sequence[bpy.types.Object]) -> None:
     """Select the objects of a side, the armatures that move them, what was fitted to them and what goes `along`.
 
-    Of what was fitted that which is hidden stays out, as copies that were kept aside are.
+    Of what was fitted that which is hidden stays out, as copies that were kept aside are.  So does an armature that
+    gave way to another one: exporters do not see that its modifiers are switched off.
 
     Raises
     ------
@@ -108,7 +109,8 @@ def _select(side: Side, along: Sequence[bpy.types.Object]) -> None:
     """
     layer, parts = view_layer_of(bpy.context), parts_of(side)
     movers = [obj.parent for obj in parts]
-    movers += [getattr(modifier, "object", None) for obj in parts for modifier in obj.modifiers]
+    live = [one for obj in parts for one in obj.modifiers if one.show_viewport or one.show_render]
+    movers += [getattr(modifier, "object", None) for modifier in live]
     fitted = {item for body in (side, *parts) for item in fitted_to(body)}
     wanted = [*parts, *along, *(mover for mover in movers if mover is not None and mover.type == "ARMATURE")]
     layer.update()

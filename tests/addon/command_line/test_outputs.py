@@ -57,6 +57,21 @@ def test_what_is_hidden_is_written_all_the_same(hidden, tmp_path):
     assert find_armature(back) is not None
 
 
+@pytest.mark.parametrize("suffix", ["fbx", "glb"])
+def test_an_armature_that_gave_way_to_another_one_is_not_written(suffix, tmp_path):
+    """The exporter of FBX would let both move the mesh."""
+    source, rig = add_rigged(resolution=4)
+    aside = source.modifiers.new("Old", "ARMATURE")
+    aside.object = rig.copy()
+    bpy.context.scene.collection.objects.link(aside.object)
+    aside.show_viewport = aside.show_render = False
+    save(tmp_path / f"rigged.{suffix}", source)
+    known = set(bpy.data.objects)
+    (back,), _ = load_meshes([MeshArgument(tmp_path / f"rigged.{suffix}")])
+    (armature,) = (obj for obj in set(bpy.data.objects) - known if obj.type == "ARMATURE")
+    assert [modifier.object for modifier in back.modifiers if modifier.type == "ARMATURE"] == [armature]
+
+
 def test_what_cannot_be_written_because_its_collection_is_hidden_is_told(tmp_path):
     source, rig = add_rigged(resolution=4)
     shut = bpy.data.collections.new("Shut")
