@@ -44,14 +44,20 @@ def played_action(armature: bpy.types.Object) -> bpy.types.Action | None:
 def actions_of(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """Return all actions of the file that move bones of an armature.
 
-    Where rigs have bones of the same names, what others play, or what was made for them, is theirs unless it plays it.
+    Where rigs have bones of the same names, what others play, what was made for them, or what moves more of their bones
+    is theirs unless it plays it.
     """
     others = [obj for obj in bpy.data.objects if obj.type == "ARMATURE" and obj != armature]
     names = {obj.name for obj in others}
     theirs = {name for obj in others for name in playing(obj)}
     theirs |= {action.name for action in bpy.data.actions if cast("Any", action).get(MADE_FOR) in names}
-    theirs -= set(playing(armature))
-    return [action for action in bpy.data.actions if action.name not in theirs and moves_bones(action, armature)]
+    own = set(playing(armature))
+    return [
+        action
+        for action in bpy.data.actions
+        if moves_bones(action, armature)
+        and (action.name in own or not (action.name in theirs or _is_foreign(action, armature, others)))
+    ]
 
 
 def playing(armature: bpy.types.Object) -> list[str]:
@@ -267,6 +273,13 @@ def _clear(action: Any) -> None:  # noqa: ANN401 - before Blender 4.4
     for parts in (action.fcurves, action.groups):
         for part in list(parts):
             parts.remove(part)
+
+
+def _is_foreign(action: bpy.types.Action, armature: bpy.types.Object, others: list[bpy.types.Object]) -> bool:
+    """Tell whether an action moves more bones of one of some other armatures than of an armature."""
+    slot = slot_for(action, armature)
+    own = _matching(action, slot, armature)
+    return any(_matching(action, slot, other) > own for other in others)
 
 
 def _matching(action: bpy.types.Action, slot: Any, armature: bpy.types.Object) -> int:  # noqa: ANN401 - see above

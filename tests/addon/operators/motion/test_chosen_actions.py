@@ -48,6 +48,23 @@ def test_without_a_name_the_only_action_is_meant_and_what_others_play_is_theirs(
     assert "Dance B" not in bpy.data.actions
 
 
+def test_what_moves_more_bones_of_another_rig_is_none_of_the_sources_actions():
+    """Actions from FBX are played by nobody, and most rigs have a bone that is called "head"."""
+    source, _ = add_person("A")
+    target, made = add_person("B", "renamed")
+    target.pose.bones[made.names[made.origins.index(frozenset({"head"}))]].name = "head"
+    own = [bone.name for bone in target.pose.bones if "head" not in bone.name]
+    add_action(target, "Idle", ["head", *own[3:6]], hips=own[0]).use_fake_user = True
+    target.animation_data_clear()
+    for name in ("Walk", "Nod"):
+        add_action(source, name).use_fake_user = True
+    source.animation_data_clear()
+    assert carry(source="A", target="B", actions="ALL") == {"FINISHED"}
+    assert set(bpy.data.actions.keys()) == {"Idle", "Walk", "Nod", "Walk B", "Nod B"}
+    assert carry(source="A", target="B", action="Idle") == {"FINISHED"}  # named, it is carried all the same
+    assert "Idle B" in bpy.data.actions
+
+
 def test_an_action_that_is_played_and_moves_no_bone_is_named():
     source, _ = add_person("A")
     add_person("B", "renamed")
