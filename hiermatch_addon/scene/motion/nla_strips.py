@@ -6,12 +6,12 @@ from __future__ import annotations
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
-from .action_curves import choose_slot, clips
+import bpy
+
+from .action_curves import TRANSFORMS, choose_slot, clips, slot_curves, slot_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-
-    import bpy
 
 _TRACK = ("mute", "lock")
 _STRIP = (
@@ -45,20 +45,37 @@ def strip_actions(source: bpy.types.Object) -> list[str]:
 def add_tracks(rig: bpy.types.Object, actions: Iterable[bpy.types.Action]) -> None:
     """Put actions, and the one that is played, on tracks of their own, which are called as they are.
 
-    Those on a track already stay where they are; none is silenced by another track.
+    Those on a track already stay where they are; none is silenced by another track.  If some have keys of where the
+    object is, the others get them, too: without, the editor would put it to the origin, and to the size of one.
     """
     animation: Any = rig.animation_data or rig.animation_data_create()
     played, there = animation.action, strip_actions(rig)
+    wanted = list(dict.fromkeys([*([played] if played is not None else []), *actions]))
+    _key_object(rig, wanted, [*wanted, *(bpy.data.actions[name] for name in there)])
     animation.action, animation.use_nla = None, True
     for track in animation.nla_tracks:
         track.is_solo = False
-    for action in dict.fromkeys([*([played] if played is not None else []), *actions]):
+    for action in wanted:
         if action.name in there:
             continue
         track = animation.nla_tracks.new()
         track.name = action.name
         strip = track.strips.new(action.name, int(action.frame_range[0]), action)
         choose_slot(strip, action, rig)
+
+
+def _key_object(rig: bpy.types.Object, actions: list[bpy.types.Action], every: list[bpy.types.Action]) -> None:
+    """Give actions keys of where the object is now that they lack and some of `every` have."""
+    animation: Any = rig.animation_data
+    paths = {
+        action: {*TRANSFORMS} & {curve.data_path for curve in slot_curves(action, slot_for(action, rig))}
+        for action in every
+    }
+    for action in actions:
+        animation.action = action
+        choose_slot(animation, action, rig)
+        for path in sorted(set().union(*paths.values()) - paths[action]):
+            rig.keyframe_insert(path, frame=action.frame_range[0])
 
 
 def copy_strips(source: bpy.types.Object, target: bpy.types.Object, made: Mapping[str, bpy.types.Action]) -> list[str]:

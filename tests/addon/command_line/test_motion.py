@@ -116,6 +116,28 @@ def test_clips_move_whatever_the_nla_editor_of_the_target_silences(folder, how):
     assert animation.use_nla == (how != "off")
 
 
+@pytest.mark.parametrize("strip", [False, True])
+def test_clips_in_an_fbx_leave_the_object_as_large_as_it_is(strip, folder):
+    """Actions that came from an FBX have keys of the object, too, which the carried ones have not."""
+    both = folder / "both.blend"
+    bpy.ops.wm.open_mainfile(filepath=str(both))
+    rig = bpy.data.objects["B"]
+    rig.scale = (2, 2, 2)
+    rig.keyframe_insert("scale", frame=1)
+    rig.pose.bones[-1].keyframe_insert("location", frame=1)
+    if strip:
+        idle, rig.animation_data.action = rig.animation_data.action, None
+        rig.animation_data.nla_tracks.new().strips.new("Idle", 1, idle)
+    bpy.ops.wm.save_as_mainfile(filepath=str(both))
+    assert main(["motion", f"{both}:A", f"{both}:B", "--action=Walk*", f"--output={folder / 'out.fbx'}"]) == 0
+    assert {"Walk B", "Walk Fast B"} <= moving_clips(folder / "out.fbx")
+    sizes = [
+        curve.evaluate(5) for action in bpy.data.actions for curve in every_curve(action) if curve.data_path == "scale"
+    ]
+    assert len(sizes) == 9
+    assert np.allclose(sizes, 2)
+
+
 def test_files_of_one_character_each_need_no_names_and_the_action_is_played(folder):
     arguments = [str(folder / f"{name}.blend") for name in "AB"]
     options = ["--in-place", "--keying=all", f"--output={folder / 'out.blend'}"]
