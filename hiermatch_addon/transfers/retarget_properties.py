@@ -27,7 +27,10 @@ if TYPE_CHECKING:
     from ..jobs.transfer_job import Carried
     from ..scene.character import Side
 
-_SESSION: Final = secrets.randbelow(1 << 30) + 1
+_SESSIONS: Final = 1 << 30
+"""How many numbers of sessions there are."""
+
+_SESSION: Final = secrets.randbelow(_SESSIONS)
 """A number of this session: in another one, Blender gives the same objects other numbers."""
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
@@ -134,12 +137,17 @@ def _named(context: bpy.types.Context, name: str) -> Side | None:
 
 def _first_object(context: bpy.types.Context, report: HIERMATCH_PG_report, role: str) -> bpy.types.Object | None:
     """Return the first object of the source or the target of a report, if it is still in the view layer."""
-    if report.session == _SESSION:
+    if report.session == _session(context):
         uid = getattr(report, f"{role}_uid")
         objects: Any = view_layer_of(context).objects  # None among them: it is being removed
         return next((obj for obj in objects if obj is not None and obj.session_uid == uid), None)
     side = _named(context, getattr(report, role))
     return None if side is None else parts_of(side)[0]
+
+
+def _session(context: bpy.types.Context) -> int:
+    """Return a number of this session since the file was opened, by which the scene got a new number as well."""
+    return (_SESSION + cast("bpy.types.Scene", context.scene).session_uid) % _SESSIONS
 
 
 def copy_named(source: object, target: object, names: Iterable[str]) -> None:
@@ -173,7 +181,7 @@ def remember_transfer(
         report.source, report.target = names
         sides = [_named(context, name) for name in names]
         report.source_uid, report.target_uid = (0 if side is None else parts_of(side)[0].session_uid for side in sides)
-        report.session = _SESSION
+        report.session = _session(context)
         _tell(report, carried, left_out)
 
 

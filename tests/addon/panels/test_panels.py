@@ -466,6 +466,18 @@ class TestReports:
         target.name = "Other"
         assert shown_report(context, PANELS[0]) is None
 
+    def test_it_is_there_again_when_its_file_is_opened_again(self, tmp_path):
+        state = bpy.context.scene.hiermatch
+        state.source, state.target = add_pair()
+        tell(PANELS[0])
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "told.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "told.blend"))
+        state = bpy.context.scene.hiermatch
+        assert state.target.name == "Target"
+        assert shown_report(bpy.context, PANELS[0]) is not None
+        bpy.data.objects["Target"].name = "Other"
+        assert shown_report(bpy.context, PANELS[0]) is None
+
 
 def test_a_match_that_is_out_of_date(context):
     summary = context.scene.hiermatch.summary
