@@ -39,6 +39,9 @@ _LONGEST = 10
 _ROWS = 1 << 14
 """Rows of the eigenvectors that are computed together."""
 
+_DEPENDENT = 1e-5
+"""Ratio of the pivots of a new block up to which rounding makes up what is left of it."""
+
 _LABEL = "Computing eigenfunctions"
 
 
@@ -254,35 +257,15 @@ def _orthogonalised(image: Floats, basis: Floats, near: int) -> tuple[Floats, Fl
     row = basis.T @ image
     image -= basis @ row
     row[near:] += local
-    try:
-        new, rest = _cholesky_qr(image)
-    except np.linalg.LinAlgError:
+    new, rest = qr(image, mode="economic", check_finite=False)
+    pivots = np.abs(rest.diagonal())
+    if pivots.min() <= _DEPENDENT * pivots.max():
         # The space hardly grows any more: go on with directions that are new, whatever they are.
-        new, rest = qr(image, mode="economic", check_finite=False)
         for _ in range(2):
             new -= basis @ (basis.T @ new)
             new, factor = qr(new, mode="economic", check_finite=False)
             rest = factor @ rest
     return row, new, rest
-
-
-def _cholesky_qr(columns: Floats) -> tuple[Floats, Floats]:
-    """QR decomposition of a tall array by matrix products, twice for full accuracy.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the columns are too close to dependent for this.
-    """
-    rest = np.eye(columns.shape[1])
-    for _ in range(2):
-        lower = np.linalg.cholesky(columns.T @ columns)
-        pivots = lower.diagonal()
-        if pivots.min() < 1e-5 * pivots.max():
-            raise np.linalg.LinAlgError
-        columns = columns @ np.linalg.inv(lower).T
-        rest = lower.T @ rest
-    return columns, rest
 
 
 def _rayleigh_ritz(factor: ShiftedFactor, wanted: int, basis: Floats, projected: Floats, rest: Floats) -> _Ritz:
