@@ -15,7 +15,7 @@ from ..runtime.arrays import TINY, Bools, Floats, Ints, group_sums, slices, unit
 from ..runtime.progress import Progress, Steps, within
 from ..shapes.proxy import Proxy
 from .torn_patches import NearVertices, with_patches_mended
-from .untangling import follow_neighbours, torn_vertices, untangle_steps
+from .untangling import follow_neighbours, untangle_steps
 
 _ROTATION_ROUNDS = 2  # of averaging rotation and scale over the proxy
 _FIELD_ROUNDS = 2  # of averaging the whole motion over the proxy
@@ -118,11 +118,8 @@ def lift_steps(
             starts[part], positions[part], lift.turned(motion, part)
         )
         astray[part] = agreement <= _NORMAL_GATE
-    reached = SurfacePoints.from_barycentric(target, triangles, barycentric)
-    astray |= torn_vertices(source, reached.positions)
     yield Progress(0.85, _LABEL)
-    starts = follow_neighbours(source, reached.nearest_vertices, astray)
-    del reached  # of a million vertices, what is not needed any more counts
+    starts = follow_neighbours(source, target.triangles[triangles, barycentric.argmax(axis=1)], astray)
     again = np.flatnonzero(astray)
     for rows in slices(len(again), _CHUNK):
         some = again[rows]

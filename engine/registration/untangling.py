@@ -29,7 +29,6 @@ _LEAST_AREA = 0.2  # part of its own area, in the scale of the target, that a tr
 _SMALLEST = 0.01  # part of the mean area from which on a triangle counts: one without area has no side to be on
 _TETHER = 1e-3  # weight of staying in place, squared distances in units of the mean area, against the areas that lack
 _CHUNK = 200_000
-_TORN = 6.0  # times the median: edges that a map stretches more than this lead to another place
 
 
 def follow_neighbours(mesh: TriangleMesh, values: Ints, astray: Bools) -> Ints:
@@ -65,30 +64,6 @@ def follow_neighbours(mesh: TriangleMesh, values: Ints, astray: Bools) -> Ints:
         left = astray[tail]
         tail, head = tail[left], head[left]
     return values
-
-
-def torn_vertices(mesh: TriangleMesh, images: Floats) -> Bools:
-    """Find the vertices that a map takes far away from where it takes most of their neighbours.
-
-    Parameters
-    ----------
-    mesh : TriangleMesh
-        The surface.
-    images : (n, 3) array of float
-        Where its vertices are mapped to.
-
-    Returns
-    -------
-    (n,) array of bool
-        Vertices at least half of whose edges are stretched six times more than the median.
-    """
-    tail, head = mesh.edges.T
-    lengths = np.maximum(mesh.edge_lengths, 1e-3 * mesh.edge_lengths.mean())
-    stretch = np.linalg.norm(images[tail] - images[head], axis=1) / lengths
-    long = np.flatnonzero(stretch > _TORN * np.median(stretch))
-    many = np.bincount(mesh.edges[long].ravel(), minlength=mesh.vertex_count)
-    degree = np.bincount(mesh.edges.ravel(), minlength=mesh.vertex_count)
-    return (many > 0) & (2 * many >= degree)
 
 
 def flipped_triangles(

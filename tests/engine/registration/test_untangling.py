@@ -5,7 +5,7 @@ import numpy as np
 
 from engine import SurfaceMap, SurfacePoints, TriangleMesh
 from engine.mesh.closest_points import ClosestPoints
-from engine.registration.untangling import flipped_triangles, follow_neighbours, torn_vertices, untangle_steps
+from engine.registration.untangling import flipped_triangles, follow_neighbours, untangle_steps
 from engine.runtime.progress import run
 from tests.shapes import icosphere, permuted, plane
 
@@ -110,18 +110,6 @@ def test_a_map_in_order_is_not_touched():
     run(untangle_steps(source, target, triangles, barycentric, search=search))
     np.testing.assert_array_equal(triangles, found.triangles)
     np.testing.assert_array_equal(barycentric, found.barycentric)
-
-
-def test_vertices_far_from_the_images_of_their_neighbours_are_torn():
-    mesh = TriangleMesh(*icosphere(6))
-    images = 2.0 * mesh.vertices
-    assert not torn_vertices(mesh, images).any()
-    images[17] *= -1
-    np.testing.assert_array_equal(np.flatnonzero(torn_vertices(mesh, images)), [17])
-    images[17] *= -1
-    pair = mesh.edges[40]
-    images[pair] *= -1
-    np.testing.assert_array_equal(np.flatnonzero(torn_vertices(mesh, images)), np.sort(pair))
 
 
 def test_what_is_untied_is_what_the_map_calls_flipped():
