@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from ...geometry.procrustes import least_turns
 from ...mesh.connectivity.adjacency import edge_graph
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Bools, Floats, Ints, evenly, unit_vectors
+from ...runtime.arrays import TINY, Bools, Floats, Ints, unit_vectors
 from .similarity_field import Surroundings
 
 _LARGEST_OFFSET = 1.5
@@ -43,13 +43,9 @@ _JOINT, _LARGEST_ELSEWHERE = 0.3, 3.0
 """Part of the sum of the radii by which a large part may touch its surroundings elsewhere to count as much as the
 largest offset, and what that counts at most."""
 
-_WORN, _WORN_POINTS = 0.3, 300
-"""Root mean square distance, in radii, up to which a large part may lie on another one when every point of it goes with
-what is nearest, as clothes do; and at how many points that is measured."""
-
-_LYING = 0.2
-"""Root mean square distance from its surroundings, in radii, up to which a large part lies on them everywhere."""
-
+_LYING, _STANDING = 0.9, 0.5
+"""Part of the vertices that touch the surroundings from which on a large part lies on them as clothes do, and below
+which one does not."""
 
 _NOT_POSSIBLE = 20.0
 """No pair costs more than that of leaving a part alone, so that as many as possible are made."""
@@ -151,7 +147,8 @@ def paired_parts(
     """Find which parts of X and Y belong together.
 
     A part is expected where its surroundings have moved it, or somewhere around where it touches them: a forearm that
-    is a part of its own swings about the elbow.  Or every point of it goes with what it lies on, as trousers do.
+    is a part of its own swings about the elbow.  What lies on its surroundings, as trousers do, goes with nothing that
+    hardly touches them.
 
     Parameters
     ----------
@@ -196,8 +193,11 @@ def paired_parts(
     for i, j in np.argwhere(possible & (shape > 1)):
         longer = np.log(_length(x_parts[i]) / _length(y_parts[j]))
         possible[i, j] = np.abs(longer) < np.log(_LARGEST_LENGTHENING)
-    worn, lying = _worn(x_parts, y_parts, around, large)
-    difference, possible = np.minimum(difference, worn), (possible & ~lying[:, None]) | np.isfinite(worn)
+    here_lying, there_lying = (
+        np.array([len(contact.vertices) / part.vertex_count for part, contact in zip(*side, strict=True)])
+        for side in (here, there)
+    )
+    possible &= ~(large & (here_lying > _LYING))[:, None] | (there_lying >= _STANDING)
     apart = np.linalg.norm(joints[:, None] - [contact.place for contact in its_contacts], axis=2)
     elsewhere = apart / (_JOINT * (radii[:, None] + y.radii) + _BLUR * unit)
     costs = difference + np.where(large[:, None], np.minimum(elsewhere, _LARGEST_ELSEWHERE), 0)
@@ -216,32 +216,6 @@ def paired_parts(
         for i, j in zip(rows, columns, strict=True)
         if possible[i, j]
     ]
-
-
-def _worn(
-    parts: Sequence[TriangleMesh], partners: Sequence[TriangleMesh], around: Surroundings, large: Bools
-) -> tuple[Floats, Bools]:
-    """Compare large parts with partners as every point goes with what is nearest: the difference, (p, q), or infinity.
-
-    And tell which of them lie on their surroundings everywhere, (p,): where these go is known, so nothing else will do.
-    """
-    difference, lying = np.full((len(parts), len(partners)), np.inf), np.zeros(len(parts), bool)
-    trees = [cKDTree(partner.vertices) for partner in partners]
-    for i in np.flatnonzero(large):
-        part = parts[i]
-        distances = around.nearest(part.vertices)[0]
-        lying[i] = np.sqrt(np.square(distances).mean()) < _LYING * radius_of(part)
-        carry = around.similarities(part.vertices, distances)
-        places = carry(part.vertices)
-        tree, area = cKDTree(places), float(np.median(carry.scales)) ** 2 * part.area  # between fingers places are torn
-        size = np.abs(np.log([area / partner.area for partner in partners])) / np.log(_LARGEST_RATIO)
-        for j in np.flatnonzero(size <= 1):
-            ahead = trees[j].query(places[evenly(part.vertex_count, _WORN_POINTS)])[0]
-            there, radius = partners[j].vertices, radius_of(partners[j])
-            back = tree.query(there[evenly(len(there), _WORN_POINTS)])[0]
-            away = np.sqrt((np.square(ahead).mean() + np.square(back).mean()) / 2) / radius
-            difference[i, j] = size[j] + away / _WORN if away < _WORN else np.inf
-    return difference, lying
 
 
 def radius_of(part: TriangleMesh) -> float:
