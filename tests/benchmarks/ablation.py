@@ -22,9 +22,14 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from scipy.sparse import eye_array
+from scipy.sparse.linalg import LinearOperator, eigsh
 from scipy.spatial import cKDTree
 
 from engine import HierMatchError, TriangleMesh, match, use_processes
+from engine.dense.components.attached_sheets import MappedSheets
+from engine.geometry.block_krylov import EigenPairs
+from engine.geometry.symmetric_factor import symmetric_factor
 from tests.benchmarks.clothed import clothed, garments
 from tests.benchmarks.known_shapes import LOST, KnownShape, KnownShapes
 from tests.benchmarks.modular import as_it_is, closed_up, ends_of, put_together
@@ -60,6 +65,9 @@ class Case:
     wholes: tuple
 
 
+NONE = np.empty(0, np.int64)
+
+
 def nothing(*_given, **_options):
     return None
 
@@ -82,8 +90,20 @@ def agreeing_already(own):
     return lambda follow, fit: own(replace(follow, disagree=()), fit)
 
 
+def by_arpack(matrix, null, count, guess):
+    """Find the lowest eigenpairs by ARPACK, with a shift below the spectrum."""
+    n = matrix.shape[0]
+    shift = -0.01 * guess
+    factor = symmetric_factor(matrix - shift * eye_array(n))
+    inverse = LinearOperator((n, n), matvec=factor.solve, dtype=float)
+    start = np.random.default_rng(0).standard_normal(n)
+    values, vectors = eigsh(matrix, min(count, n - 1), sigma=shift, OPinv=inverse, v0=start, tol=1e-4)
+    vectors[:, 0] = null
+    return returned(EigenPairs(np.append(0, values[1:].clip(0)), vectors, complete=True))
+
+
 R, D, P = "engine.dense.registered_hypotheses", "engine.dense.dense_registration", "engine.registration.prolongation"
-Q = "engine.dense.proposers"
+Q, C, E = "engine.dense.proposers", "engine.dense.components", "engine.shapes.enclosing_surface"
 MECHANISMS = {
     "the paper's answers": [(f"{D}.map_hypotheses_steps", without_starts)],
     "rigid maps": [("engine.dense.dense_hypotheses.rigid_maps", lambda _: lambda *_given: [])],
@@ -121,6 +141,27 @@ MECHANISMS = {
     "pinched gaps": [
         ("engine.repair.cleaning.pinched_gaps", lambda _: lambda *_given: (np.empty((0, 3), np.int64),) * 2)
     ],
+    "joined borders": [
+        ("engine.repair.cleaning.seam_partners", lambda _: lambda vertices, *_: np.arange(len(vertices)))
+    ],
+    "cut handles": [
+        (f"{room}.evened_steps", lambda _: lambda x, y: returned((x, y)))
+        for room in ("engine.matching.shape_matching", "engine.dense.densify")
+    ],
+    "block Krylov": [("engine.geometry.eigenpairs.lowest_eigenpairs_steps", lambda _: by_arpack)],
+    "filled openwork": [(f"{E}.is_openwork", lambda _: lambda _mesh: False)],
+    "bridged gaps": [(f"{E}.bridged", lambda _: lambda values, *_given: values)],
+    "pieces between": [(f"{E}._between", lambda _: lambda pieces, *_given: np.zeros(len(pieces), bool))],
+    "thin pieces": [(f"{E}._midst", lambda _: lambda *_given: np.zeros((0, 3)))],
+    "sheets": [
+        (
+            f"{C}.component_maps.mapped_sheets",
+            lambda _: lambda *_given: MappedSheets(NONE, NONE, np.empty((0, 3)), NONE),
+        )
+    ],
+    "paired pieces": [(f"{C}.component_maps.paired_parts", lambda _: lambda *_given: [])],
+    "turned pieces": [(f"{C}.component_alignment._turned", lambda _: lambda pair: [pair.rotations[-1]] * 2)],
+    "deformed pieces": [(f"{C}.component_alignment._DEFORMED", lambda _: (10**9, 0))],
 }
 """Mechanism -> what is put in the place of what, made of the latter."""
 
@@ -141,6 +182,10 @@ def counting(mechanism, reached):
     """What notes that a mechanism is used, in the place of any function of it."""
 
     def of(own):
+        if not callable(own):
+            reached.add(mechanism)
+            return own
+
         def used(*given, **options):
             reached.add(mechanism)
             return own(*given, **options)
@@ -303,12 +348,12 @@ def measured(case):
         found[whole[whole >= 0]] = np.flatnonzero(whole >= 0)
         numbers.append(found[body.samples])
     kept = (numbers[0] >= 0) & (numbers[1] >= 0)
-    start = time.perf_counter()
+    start = time.process_time()
     try:
         result = match(*case.meshes)
     except HierMatchError:
-        return 100.0, 1.0, time.perf_counter() - start, 0
-    seconds = time.perf_counter() - start
+        return 100.0, 1.0, time.process_time() - start, 0
+    seconds = time.process_time() - start
     errors = []
     for found, own, there in (
         (result.source_to_target, 0, 1),
