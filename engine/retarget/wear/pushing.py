@@ -197,6 +197,7 @@ def pushed_out(
     layers: Sequence[Layer],
     fixed: Bools,
     unit: float,
+    drawn: Floats | None = None,
 ) -> Floats:
     """Push an item out of what is below it: where its vertices are then, (n, 3).
 
@@ -219,10 +220,14 @@ def pushed_out(
         Vertices that stay: rigid pieces, and what is to be left alone.
     unit : float
         Root of the area of the second body.
+    drawn : (n, 3) array of float, optional
+        How far such vertices are moved first, and the cloth around them with them; zero for those that stay.
     """
     free = ~fixed
     mass = np.where(laplace.mass > 0, laplace.mass, laplace.mass.mean())
     smooth = (SPREAD * unit) ** 2 * laplace.stiffness + diags_array(FREE * mass + 1e6 * mass * fixed)
+    if drawn is not None and drawn.any():
+        positions = positions + symmetric_factor(csr_array(smooth)).solve(1e6 * (mass * fixed)[:, None] * drawn)
     shares = np.asarray((samples != 0).sum(axis=0)).ravel()
     sample_mass = samples @ (mass / np.maximum(shares, 1))
     tolerance = 1e-4 * unit

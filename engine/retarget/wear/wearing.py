@@ -223,6 +223,8 @@ def fitted_steps(
 
     What is symmetric stays so if it is to be `even`: not where the same body is compared with itself in another form.
     """
+    if not dressed.items:
+        return []
     yield Progress(0.0, "Moving the skin")
     motion, unit = BodyMotion(dressed.skin, images), dressed.skin.size
     new_unit = motion.overall * unit
@@ -230,27 +232,31 @@ def fitted_steps(
     skin_before, skin = dressed.surface, Surface(target)
     buried = dressed.buried.on(skin, images)
     works: list[_Work] = []
-    count = max(len(dressed.items), 1)
+    count = len(dressed.items)
     for number, one in enumerate(dressed.items):
         yield Progress(0.05 + 0.45 * number / count, "Moving items along")
         moved = motion.move(one.carriers)
         works.append(_Work(one.item, moved, one.below, one.pieces, moved.positions))
-    if works:
-        _elastic(works, [one.laplace for one in dressed.items], unit)
+    _elastic(works, [one.laplace for one in dressed.items], unit)
     for work in works:
         _place_pieces(work, works, motion, unit)
-    if even and works:
+    if even:
         planes = mirror_planes(target)
         for plane in mirror_planes(
             TriangleMesh.concatenated([skin_before.mesh, *(one.item.mesh for one in dressed.items)])
         ):
             _even_out(works, plane, skin, planes)
-    order = _inner_first(works, unit)
+    order, seams = _inner_first(works, unit), _seams(works, unit)
+    owners = np.repeat(np.arange(len(works)), [len(work.positions) for work in works])
+    placed = np.full((len(owners), 3), np.nan)
     spacing = 0.75 * float(np.sqrt(target.area / max(target.triangle_count, 1) * 2))
     for done, number in enumerate(order):
         yield Progress(0.5 + 0.45 * done / count, "Pushing items out")
-        below = [works[other] for other in order[:done]]
-        _push(works[number], below, (skin_before, skin), places, buried, units=units, spacing=spacing)
+        below, goals = [works[other] for other in order[:done]], placed.copy()
+        goals[seams[:, 0]] = placed[seams[:, 1]]
+        work, own = works[number], owners == number
+        _push(work, below, (skin_before, skin), places, buried, goals=goals[own], units=units, spacing=spacing)
+        placed[own] = work.positions
     yield Progress(0.95, "Measuring")
     fitted = [_fitted(work, skin, source_to_target, units) for work in works]
     return [cut_open(one, worn.welded) for one, worn in zip(fitted, dressed.items, strict=True)]
@@ -278,10 +284,11 @@ def _elastic(works: Sequence[_Work], laplaces: Sequence[LaplaceBeltrami], unit: 
     ends = np.cumsum([len(work.positions) for work in works])[:-1]
     pull, goals = np.concatenate(drawn), np.concatenate([work.motion.positions for work in works])
     stiffness = block_diag([surface.stiffness for surface in surfaces])
-    points = np.concatenate([work.item.mesh.vertices for work in works])
-    stand_for_skin = np.concatenate([np.abs(work.below.distances) < _NOTHING * unit for work in works])
-    owners = np.where(stand_for_skin, np.repeat(np.arange(len(works)), [len(work.positions) for work in works]), -1)
-    seams = _seams(points, owners, _SEWN * unit)
+    pairs = _seams(works, unit)
+    rows, one, other = np.arange(len(pairs)), pairs[:, 0], pairs[:, 1]
+    between = csr_array((np.ones(len(pairs)), (rows, one)), shape=(len(pairs), len(pull)))
+    between = csr_array(between - csr_array((np.ones(len(pairs)), (rows, other)), shape=between.shape))
+    seams = csr_array(between.T @ between) / 2
     factor = symmetric_factor(csr_array(stiffness + diags_array(pull) + _SEAM * seams))
     for _ in range(_ROUNDS):
         pulls = [surface.pull(work.motion.rotations) for work, surface in zip(works, surfaces, strict=True)]
@@ -291,14 +298,14 @@ def _elastic(works: Sequence[_Work], laplaces: Sequence[LaplaceBeltrami], unit: 
             work.motion = replace(work.motion, rotations=surface.rotations(places, _TURN_RADIUS * _HOLD * unit))
 
 
-def _seams(points: Floats, owners: Ints, near: float) -> csr_array:
-    """Matrix (n, n) of the squared distances between points (n, 3) that meet those of another owner, -1 for none."""
-    one, other = cKDTree(points).query_pairs(near, output_type="ndarray").T
-    meet = (owners[one] != owners[other]) & (owners[one] >= 0) & (owners[other] >= 0)
-    count, columns = np.count_nonzero(meet), np.concatenate([one[meet], other[meet]])
-    signs, rows = np.repeat([1.0, -1.0], count), np.tile(np.arange(count), 2)
-    between = csr_array((signs, (rows, columns)), shape=(count, len(points)))
-    return csr_array(between.T @ between)
+def _seams(works: Sequence[_Work], unit: float) -> Ints:
+    """Find where parts meet that a body was cut into: pairs of vertices, numbered through all items, (s, 2)."""
+    points = np.concatenate([work.item.mesh.vertices for work in works])
+    owners = np.repeat(np.arange(len(works)), [len(work.positions) for work in works])
+    stand_for_skin = np.concatenate([np.abs(work.below.distances) < _NOTHING * unit for work in works])
+    pairs = cKDTree(points).query_pairs(_SEWN * unit, output_type="ndarray")
+    pairs = pairs[(owners[pairs[:, 0]] != owners[pairs[:, 1]]) & stand_for_skin[pairs].all(axis=1)]
+    return np.concatenate([pairs, pairs[:, ::-1]]).astype(np.int64)
 
 
 def _place_pieces(work: _Work, works: Sequence[_Work], motion: BodyMotion, unit: float) -> None:
@@ -415,10 +422,11 @@ def _push(
     places: Ints,
     buried: Buried,
     *,
+    goals: Floats,
     units: tuple[float, float],
     spacing: float,
 ) -> None:
-    """Push an item out of the skin and of the items below it."""
+    """Push an item out of the skin and of the items below it; some vertices have goals (n, 3), others no numbers."""
     item, (unit, new_unit) = work.item, units
     start = work.positions
     work.pushed = np.zeros(len(start))
@@ -437,8 +445,11 @@ def _push(
         layers.append(layer(*surfaces, least=_LAYERS * new_unit))
     rigid = work.pieces >= 0
     fixed = rigid if item.left is None else rigid | item.left
-    laplace = laplace_beltrami(now)
-    positions = pushed_out(mesh, start, laplace, samples[0], layers=layers, fixed=fixed, unit=new_unit)
+    held = np.isfinite(goals).all(axis=1) & ~fixed
+    drawn = np.where(held[:, None], goals - start, 0.0)
+    positions = pushed_out(
+        mesh, start, laplace_beltrami(now), samples[0], layers=layers, fixed=fixed | held, drawn=drawn, unit=new_unit
+    )
     if rigid.any():
         positions = _with_pieces(work, positions, layers)
     work.positions, work.through = positions, _sunk(samples[0] @ positions, layers, new_unit)

@@ -307,6 +307,20 @@ def test_parts_that_a_body_was_cut_into_stay_together():
     assert apart.max() < 0.004
 
 
+def test_parts_that_a_body_was_cut_into_are_pushed_together():
+    upper, lower = (BODY.submesh(side)[0] for side in (BODY.vertices[:, 2] > -0.1, BODY.vertices[:, 2] < 0.1))
+    x, _, z = BODY.vertices.T
+    ridge = 0.05 * np.exp(-np.square(z - 0.12 * x) / 0.02)
+    target = TriangleMesh(BODY.vertices * (1 + ridge)[:, None], BODY.triangles)
+    steps = wear_steps(BODY, target, SurfaceMap.identity(target), BODY.vertices, [WornItem(upper), WornItem(lower)])
+    one, other = run(steps)
+    gaps, partners = cKDTree(lower.vertices).query(upper.vertices)
+    both = np.flatnonzero(gaps == 0)
+    assert len(both) > 20
+    assert one.pushed[both].max() > 0.03
+    np.testing.assert_allclose(one.positions[both], other.positions[partners[both]], atol=1e-5)
+
+
 def test_items_follow_what_a_body_has_on_one_side_alone():
     (shirt,), _ = by_a_map_that_slid_on_one_side([WornItem(SHIRT)], bump=0.4)
     assert mirrored_away(SHIRT, shirt.positions).max() > 0.2
