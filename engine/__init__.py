@@ -48,7 +48,7 @@ from .retarget.values.shape_key_transfer import Scaling, carry_offsets_steps
 from .retarget.values.symmetrising import Symmetriser
 from .retarget.values.uv_transfer import CarriedUVs, carry_uvs_steps
 from .retarget.wear.body_ends import continues_body, ends_at_joint
-from .retarget.wear.handed_weights import handed_weights
+from .retarget.wear.handed_weights import handed_weights, shares_below_steps
 from .retarget.wear.hanging_cloth import hanging_triangles
 from .retarget.wear.item_bones import bones_of_items, moved_with_items
 from .retarget.wear.key_following import follow_keys_steps
@@ -193,6 +193,7 @@ __all__ = [
     "row_shares",
     "row_sums",
     "run",
+    "shares_below_steps",
     "slopes_of",
     "standing_share",
     "standing_weights",

@@ -7,13 +7,14 @@ FOLDER holds the files of `CASES`.  Characters are taken apart: what is named th
 body, which has no skin below most of them.  Everything goes through import and the button *Wear*.
 
 A row holds the confidence of the match in %; what part of the skin below the items shows through them, by area, in %:
-at rest, in the mean of three poses, and in the worst of them; how far what is worn on the trunk stands off the skin at
-rest, in % of the body's height (the 99th percentile of its vertices); how far what is worn on the legs is higher or
-lower than on the source, in % of either's height (the 95th percentile); how far it is from even at rest, on the mean:
-from each vertex to the mirror image of its partner, in % of the height; and the seconds of one core that it took.
+at rest, in the mean of three poses, in the worst of them, and in the mean of a squat and of a raised thigh; how far
+what is worn on the trunk stands off the skin at rest, in % of the body's height (the 99th percentile of its vertices);
+how far what is worn on the legs is higher or lower than on the source, in % of either's height (the 95th percentile);
+how far it is from even at rest, on the mean: from each vertex to the mirror image of its partner, in % of the height;
+and the seconds of one core that it took.
 --remeshed leaves the target 6,000 triangles, whose corners are no mirror images of one another.
 --save keeps a .blend of each case, to look at; --pictures renders each: the source, the target from four sides, and
-in the three poses.
+in the five poses.
 """
 
 import argparse
@@ -89,6 +90,12 @@ POSES = (
     {("upper_arm", "L"): (0, 0, -1.2), ("lower_arm", "L"): (0, 0, -0.9), ("upper_leg", "R"): (1.3, 0, 0)},
 )
 """By what angles limbs are turned about the axes of the world, in radians."""
+
+RAISED = (
+    {(part, side): (turn, 0, 0) for part, turn in (("upper_leg", -1.4), ("lower_leg", 1.6)) for side in "LR"},
+    {("upper_leg", "L"): (-1.57, 0, 0), ("lower_leg", "L"): (1.5, 0, 0)},
+)
+"""The same of a squat, and of one thigh that is raised."""
 
 SHOWS = 0.00002, 0.015
 """How far above an item, in the root of the body's area, skin shows: nearer the two are one, farther away it is beside
@@ -219,7 +226,7 @@ def bend(rig, turns):
 def shown(rig, bodies, items):
     """What part of the skin below items shows, by area: at rest, and in each pose."""
     parts, below = [], None
-    for turns in ({}, *POSES):
+    for turns in ({}, *POSES, *RAISED):
         bend(rig, turns)
         body = TriangleMesh(*shown_surface(bodies))
         near, shows = through(body, TriangleMesh(*shown_surface(items)))
@@ -269,7 +276,7 @@ def picture(rig, source, target, path):
     views = [
         (source, {}, SIDES[0]),
         *((target, {}, side) for side in SIDES),
-        *((target, one, SIDES[0]) for one in POSES),
+        *((target, one, SIDES[0]) for one in (*POSES, *RAISED)),
     ]
     meshes = [obj for obj in bpy.data.objects if obj.type == "MESH"]
     paths = [path.with_name(f"{path.stem}-{number}.png") for number in range(len(views))]
@@ -285,7 +292,7 @@ def picture(rig, source, target, path):
         render(one, SAMPLES)
         for obj in set(bpy.data.objects) - known:
             bpy.data.objects.remove(obj)
-    sheet([paths[:4], paths[4:]], path)
+    sheet([paths[:5], paths[5:]], path)
     for one in paths:
         one.unlink()
 
@@ -313,7 +320,9 @@ def main():
     parser.add_argument("--pictures", type=Path, help="folder for the pictures")
     options = parser.parse_args()
     registered_extension()
-    print(f"{'case':18s} confidence  shows at rest  in poses     worst stands off   shifted    uneven  seconds")
+    print(
+        f"{'case':18s} confidence  shows at rest  in poses     worst    raised stands off   shifted    uneven  seconds"
+    )
     for case in CASES if options.only == "all" else options.only.split(","):
         bpy.ops.wm.read_homefile(use_empty=True)
         start = time.process_time()
@@ -321,8 +330,9 @@ def main():
         seconds = time.process_time() - start
         off = stands_off(bodies, items), shifted(skin, bodies, items), uneven(bodies, items)
         rest, *poses = shown(rig, bodies, items)
+        poses, raised = poses[: len(POSES)], poses[len(POSES) :]
         said = re.search(r"Confidence (\d+)", bpy.context.scene.hiermatch_retarget.report.verdict)
-        numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), *off))
+        numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), np.mean(raised), *off))
         print(f"{case:18s} {said[1] if said else '-':>10s}{numbers}{seconds:9.1f}", flush=True)
         if options.save:
             options.save.mkdir(parents=True, exist_ok=True)

@@ -19,6 +19,7 @@ from ....engine import (
     lift_for_poses_steps,
     mend_weights_steps,
     pair_bones,
+    shares_below_steps,
     within,
 )
 from ...common.phrases import counted
@@ -154,9 +155,10 @@ class ItemMotion:
             (there.barycentric.ravel(), there.corners.ravel(), np.arange(0, 3 * len(there) + 1, 3)),
             shape=(len(there), there.image_vertex_count),
         )
-        on_skin = csr_array(spread @ rig.weights)
+        lying = [(fitted.positions, csr_array(fitted.places @ spread)) for fitted in self.fitted]
+        shares = yield from within(shares_below_steps(lying, passage.pair.target), 0.0, 0.1)
+        skins = [csr_array(each @ rig.weights) for each in shares]
         brought = () if self._item_bones is None else self._item_bones.names
-        skins = [csr_array(fitted.places @ on_skin) for fitted in self.fitted]
         lost = [name for name in self._bone_names if name in self._old_bones and name not in (*rig.names, *brought)]
         pairing = self._pairing(passage, rig, lost)
         self.handed = pairing is not None
@@ -179,7 +181,7 @@ class ItemMotion:
             handed = pairing is not None
             found.append(chosen_weights(item.weights, every, spread_out, old, self._settings, handed=handed))
         if self._settings.poses:
-            yield from self._pose_steps(passage.pair.target, rig, found)
+            yield from within(self._pose_steps(passage.pair.target, rig, found), 0.1, 1.0)
         self.weights = list(found)
 
     def _pose_steps(self, body: TriangleMesh, rig: SourceRig, found: list[ItemWeights]) -> Steps[None]:

@@ -8,13 +8,13 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from hiermatch.engine import Progress
+from hiermatch.engine import ClosestPoints, Progress, TriangleMesh
 from hiermatch.hiermatch_addon.transfers.wearing import item_motion
 from mathutils import Vector
 from scipy.sparse import csr_array
 from scipy.spatial.distance import pdist
 
-from tests.addon.garments import fitted, in_world, wear
+from tests.addon.garments import add_item, fitted, in_world, wear
 from tests.addon.rigs import add_armature
 
 
@@ -34,6 +34,35 @@ def test_all_that_the_armature_moves_gets_the_weights_of_the_other_rig(dressed_p
     assert "neck" not in copy.vertex_groups
     weights = [vertex.groups[0].weight for vertex in copy.data.vertices]
     np.testing.assert_allclose(weights, 1, atol=1e-3)
+
+
+def test_tight_cloth_moves_as_the_skin_just_below_it(dressed_pair):
+    """Not as that which the map says, where cloth has come to lie beside it."""
+    source, target, *_ = dressed_pair
+    tights = add_item(source, "Tights", 0.004)
+    rigs = [add_armature("Rig A"), add_armature("Rig B")]
+    for bone in rigs[1].data.bones:
+        bone.name = f"other {bone.name}"
+    bind(source, rigs[0])
+    bind(tights, rigs[0])
+    skin = in_world(target)
+    waves = 0.5 + 0.5 * np.sin(30 * skin[:, 2] / np.ptp(skin[:, 2]))
+    for name, weights in (("other neck", waves), ("other tail", 1 - waves)):
+        group = target.vertex_groups.new(name=name)
+        for number, weight in enumerate(weights):
+            group.add([number], weight, "REPLACE")
+    target.modifiers.new("Armature", "ARMATURE").object = rigs[1]
+    assert wear("Tights", wear_poses=False) == {"FINISHED"}
+    copy = fitted("Tights")
+    target.data.calc_loop_triangles()
+    surface = TriangleMesh(skin, np.array([triangle.vertices[:] for triangle in target.data.loop_triangles]))
+    found = ClosestPoints(surface).nearest(in_world(copy))
+    tight = np.sqrt(found.squared_distances) < 0.01 * np.sqrt(surface.area)
+    neck = copy.vertex_groups["other neck"].index
+    weights = [sum(one.weight for one in vertex.groups if one.group == neck) for vertex in copy.data.vertices]
+    assert tight.sum() > 30
+    below = found.interpolate(surface.triangles, waves[:, None])[:, 0]
+    np.testing.assert_allclose(np.array(weights)[tight], below[tight], atol=0.01)
 
 
 def test_a_posed_body_may_have_modifiers_that_add_and_hide_vertices(dressed_pair):
