@@ -15,7 +15,7 @@ from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 
-_ANGLE = np.radians(50.0)
+ANGLE = float(np.radians(50.0))
 """How far each joint is bent, about two axes and both ways."""
 
 _LARGE_PART = 0.02
@@ -59,7 +59,12 @@ def turned(levers: Floats, rotation: Floats) -> Floats:
 
 
 def joint_bends(
-    body: TriangleMesh, skin_weights: csr_array, skeleton: Skeleton, bones: Sequence[int] | Ints
+    body: TriangleMesh,
+    skin_weights: csr_array,
+    skeleton: Skeleton,
+    bones: Sequence[int] | Ints,
+    *,
+    angle: float = ANGLE,
 ) -> Iterator[JointBend]:
     """Yield the bends of some bones that move more of a body than fingers do.
 
@@ -73,17 +78,19 @@ def joint_bends(
         The bones.
     bones : sequence of int
         Which of them are asked for.
+    angle : float
+        How far they are bent, in radians.
     """
     for bone in bones:
         hanging, head = skeleton.hanging[bone], skeleton.heads[bone]
         on_skin = row_sums(skin_weights[:, hanging])
         if on_skin @ body.vertex_areas >= _LARGE_PART * body.area:
-            yield JointBend(hanging, head, on_skin, _bends(skeleton.tails[bone] - head))
+            yield JointBend(hanging, head, on_skin, _bends(skeleton.tails[bone] - head, angle))
 
 
-def _bends(along: Floats) -> Floats:
+def _bends(along: Floats, angle: float) -> Floats:
     """Rotations about two axes across a bone, both ways, (4, 3, 3)."""
     along = unit_vectors(along)
     first = unit_vectors(np.cross(along, np.eye(3)[int(np.abs(along).argmin())]))
     axes = np.stack([first, -first, np.cross(along, first), np.cross(first, along)])
-    return Rotation.from_rotvec(_ANGLE * axes).as_matrix()
+    return Rotation.from_rotvec(angle * axes).as_matrix()

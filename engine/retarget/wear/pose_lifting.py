@@ -40,8 +40,17 @@ _SHALLOW = 0.015
 """How deep in the skin, in the same unit, cloth is in a pose that lifting it may help; what is deeper is in a fold."""
 
 _MOST = 0.004
-"""How far, in the same unit, anything is lifted at most: 5 mm on a human.  With more, no less skin shows in the poses
-of ``python -m tests.benchmarks.worn_makers``: what is lifted far in one place comes through in others."""
+"""How far, in the same unit, cloth of small triangles is lifted at most: 5 mm on a human.  With twice as much the
+outfits of ``python -m tests.benchmarks.outfits`` are further from where they should be (0.717 instead of 0.710)."""
+
+_COARSE = 0.15
+"""The same for cloth of large triangles, further through which skin comes: a part of the root of a vertex's area, up to
+`_NEAR`.  With 0.1 and 0.008 twice as much skin shows at the raised thigh of Formal in ``python -m
+tests.benchmarks.worn_makers``."""
+
+_FAR = float(np.radians(80.0))
+"""How far joints are bent, as hips are in a squat, in poses that are tried for large triangles alone: without, four
+times as much skin shows through Formal there.  Small ones would take outfits further away in them (0.713)."""
 
 _ROOM = 0.8
 """Part of the distance that a vertex would have from the skin, lifted twice as far as any is, from which on it has
@@ -109,6 +118,9 @@ def lift_for_poses_steps(
     cloth = _Cloth(items, skin, unit)
     lying = _Lying.of(cloth, skin, unit)
     looked = [(bend, lying.partly(cloth, bend)) for bend in bends]
+    for bend in joint_bends(body, skin_weights, skeleton, range(len(skeleton)), angle=_FAR):
+        rows = lying.partly(cloth, bend)
+        looked.append((bend, rows[lying.coarse[rows]]))
     for number in range(_ROUNDS):
         yield Progress(number / _ROUNDS, "Trying poses")
         lacking = lying.lacking(cloth, looked, unit)
@@ -131,16 +143,17 @@ class _Cloth:
             vstack([part.means @ item.weights for part, item in zip(self.parts, items, strict=True)])
         )
         still = [item.still[part.first] for part, item in zip(self.parts, items, strict=True)]
-        _, outward, heights = _below(self.positions, skin)
+        _, self._outward, heights = _below(self.positions, skin)
         self.is_still = np.concatenate(still) | (row_sums(self.weights) <= 0)
-        self.is_still |= _is_squeezed(self.positions, heights, outward, skin, unit)
         operators = [laplace_beltrami(mesh) for mesh in meshes]
         self.mass = np.concatenate([np.where(each.mass > 0, each.mass, each.mass.mean()) for each in operators])
+        self.most = (_COARSE * np.sqrt(self.mass)).clip(_MOST * unit, _NEAR * unit)
+        self.is_still |= _is_squeezed(self.positions, heights, self._outward, skin, 2 * self.most)
         stiffness = block_diag([each.stiffness for each in operators], format="csr")
-        self._smooth = csr_array((SPREAD * unit) ** 2 * stiffness + self._ties(meshes, outward))
+        self._smooth = csr_array((SPREAD * unit) ** 2 * stiffness + self._ties(meshes))
         self.moves = np.zeros_like(self.positions)
 
-    def _ties(self, meshes: Sequence[TriangleMesh], outward: Floats) -> csr_array:
+    def _ties(self, meshes: Sequence[TriangleMesh]) -> csr_array:
         """Return what holds layers above the same skin together, be they of different items or of one, (w, w)."""
         owners = np.repeat(np.arange(len(meshes)), [mesh.vertex_count for mesh in meshes])
         normals = np.concatenate([mesh.vertex_normals for mesh in meshes])
@@ -149,7 +162,7 @@ class _Cloth:
         one, column = np.nonzero(distances < _LAYERS * self._unit)
         other = near[one, column]
         apart = (owners[one] != owners[other]) | (np.einsum("ki,ki->k", normals[one], normals[other]) < _OPPOSITE)
-        apart &= np.einsum("ki,ki->k", outward[one], outward[other]) > _ALIKE
+        apart &= np.einsum("ki,ki->k", self._outward[one], self._outward[other]) > _ALIKE
         one, other = one[apart], other[apart]
         partners = np.bincount(one, minlength=len(owners))[one]
         strength = _TOGETHER * np.minimum(self.mass[one], self.mass[other]) / partners
@@ -174,8 +187,10 @@ class _Cloth:
         hold = diags_array(self.mass * (FREE + _STILL * self.is_still))
         factor = symmetric_factor(csr_array(self._smooth + hold + rows.T @ weighted))
         moves = self.moves + factor.solve(weighted.T @ lacking[chosen])
+        # Beside what is lifted a smooth move overshoots, but nothing is to come nearer to the skin.
+        moves -= np.einsum("ki,ki->k", moves, self._outward).clip(max=0)[:, None] * self._outward
         lengths = np.linalg.norm(moves, axis=1)
-        moves *= np.minimum(1, _MOST * self._unit / np.maximum(lengths, _TRIFLE * self._unit))[:, None]
+        moves *= np.minimum(1, self.most / np.maximum(lengths, _TRIFLE * self._unit))[:, None]
         moves[self.is_still] = 0.0
         self.moves = moves
 
@@ -205,6 +220,8 @@ class _Lying:
         The normal there.
     least : (k,) array of float
         Their least distance from it in a pose.
+    coarse : (k,) array of bool
+        Which are on large triangles.
     """
 
     shares: csr_array
@@ -213,6 +230,7 @@ class _Lying:
     numbers: Ints
     normals: Floats
     least: Floats
+    coarse: Bools
 
     @classmethod
     def of(cls, cloth: _Cloth, skin: Surface, unit: float) -> _Lying:
@@ -231,6 +249,7 @@ class _Lying:
             numbers[at],
             body.triangle_normals[found.triangles[at]],
             np.minimum(heights[at], _ABOVE * unit),
+            (shares @ (cloth.most > _MOST * unit))[at] > 1 / 2,
         )
 
     def partly(self, cloth: _Cloth, bend: JointBend) -> Ints:
@@ -275,7 +294,7 @@ def _below(points: Floats, skin: Surface) -> tuple[FoundPoints, Floats, Floats]:
     return found, unit_vectors(outward), heights
 
 
-def _is_squeezed(points: Floats, heights: Floats, outward: Floats, skin: Surface, unit: float) -> Bools:
-    """Say which points (k, 3) are in the skin, at heights (k,) along its normals (k, 3), or have other skin above."""
-    lifted = skin.clearance(points + 2 * _MOST * unit * outward).distances
-    return (heights <= 0) | (lifted < _ROOM * (heights + 2 * _MOST * unit))
+def _is_squeezed(points: Floats, heights: Floats, outward: Floats, skin: Surface, room: Floats) -> Bools:
+    """Say which points (k, 3), at heights (k,) along normals of the skin (k, 3), have no room (k,) or are in it."""
+    lifted = skin.clearance(points + room[:, None] * outward).distances
+    return (heights <= 0) | (lifted < _ROOM * (heights + room))
