@@ -163,9 +163,13 @@ class _Cloth:
         other = near[one, column]
         apart = (owners[one] != owners[other]) | (np.einsum("ki,ki->k", normals[one], normals[other]) < _OPPOSITE)
         apart &= np.einsum("ki,ki->k", self._outward[one], self._outward[other]) > _ALIKE
-        one, other = one[apart], other[apart]
+        one, column, other = one[apart], column[apart], other[apart]
         partners = np.bincount(one, minlength=len(owners))[one]
-        strength = _TOGETHER * np.minimum(self.mass[one], self.mass[other]) / partners
+        # Where two parts were one they stay so.
+        sewn = distances[one, column] < _TRIFLE * self._unit
+        np.minimum.at(self.most, one[sewn], self.most[other[sewn]])
+        np.logical_or.at(self.is_still, one[sewn], self.is_still[other[sewn]])
+        strength = np.where(sewn, _STILL, _TOGETHER) * np.minimum(self.mass[one], self.mass[other]) / partners
         rows = np.arange(len(one))
         shape = (len(one), len(owners))
         between = csr_array((np.ones(len(one)), (rows, one)), shape=shape)

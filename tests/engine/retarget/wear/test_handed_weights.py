@@ -47,7 +47,7 @@ def test_arrays_that_do_not_fit_are_refused():
 
 
 LEG = TriangleMesh(*cylinder(32, 40, 0.5, 4.0))
-"""Along z, its closed ends at 0 and 4."""
+"""Along z, from 0 to 4."""
 
 
 def heights_below(positions, body=LEG, carrier=2.0):

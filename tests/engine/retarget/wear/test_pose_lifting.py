@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
 
 from engine import ClosestPoints, Skeleton, TriangleMesh, run
 from engine.retarget.wear.joint_bends import joint_bends
@@ -106,6 +107,19 @@ def test_layers_are_lifted_together():
         np.linalg.norm((item.positions + moves)[:, :2], axis=1) for item, moves in ((inner, below), (outer, above))
     ]
     assert (radii[1] - radii[0] > 0.001).all()
+
+
+def test_parts_that_meet_at_a_seam_are_lifted_as_one():
+    upper, lower = (cylinder(16, rings, 0.52, 1.8) for rings in (8, 3))
+    upper[0][:, 2] += 2.0
+    lower[0][:, 2] += 0.2
+    items = [WeightedItem(vertices, triangles, weights_of(vertices)) for vertices, triangles in (upper, lower)]
+    above, below = lifts(limb(), *items)
+    gaps, partners = cKDTree(lower[0]).query(upper[0])
+    both = np.flatnonzero(gaps < 1e-9)
+    assert len(both) >= 16
+    assert np.linalg.norm(above[both], axis=1).max() > 0.01
+    np.testing.assert_allclose(above[both], below[partners[both]], atol=4e-4)
 
 
 def test_seams_stay_closed():
