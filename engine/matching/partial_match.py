@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from ..dense.components.masked_maps import share_of, with_pieces_only
 from ..dense.credibility import ALL_ALIKE, CREDIBLE, EVEN, MUCH_ALIKE, has_failed, is_less_alike
+from ..dense.proposers import are_distinct
 from ..mesh.surface_map import SurfaceMap
 from ..runtime.arrays import Bools, marked
 from ..runtime.errors import MatchError
@@ -118,6 +119,13 @@ class PartialPair:
         """
         enough = MUCH_ALIKE if is_sure else ALL_ALIKE
         return result is not known and self.shows_all(result) and is_as_alike(result, enough)
+
+    def lead_alike(self, first: MatchResult, second: MatchResult) -> bool:
+        """Say whether two matches take what both show of the part to the same places."""
+        (_, here), (_, there) = self.maps(first), self.maps(second)
+        areas = self.part.original.vertex_areas * (here.has_partner & there.has_partner)
+        unit = self.whole.scale
+        return bool(areas.any()) and not are_distinct(here.positions / unit, there.positions / unit, areas)
 
     def piece_steps(self, piece: Bools, task: MatchTask) -> Steps[MatchResult | None]:
         """Match with some vertices (n,) of the whole only; None if these are all of it, or cannot be matched."""
@@ -231,7 +239,7 @@ def agreed_part_steps(
     result : MatchResult
         The most credible match, the known one among them.
     agrees : bool
-        Whether the search leads to where that does: then it was followed, and nothing else.
+        Whether the search leads to where that does, by the piece that it finds, or by a match with another one.
     """
     pieces = yield from within(_pieces_steps(known, pair, CREDIBLE), 0.0, _FOUND)
     task.clock.lap("missing parts")
@@ -240,7 +248,8 @@ def agreed_part_steps(
         return closer, True
     task = replace(task, begun=known.source_to_target) if agrees else task
     found = [(piece, pair) for piece in pieces[: 1 if agrees else _MOST]]
-    return (yield from within(_best_piece_steps(known, task, found, least=CREDIBLE), _FOUND, 1.0)), agrees
+    result = yield from within(_best_piece_steps(known, task, found, least=CREDIBLE), _FOUND, 1.0)
+    return result, agrees or (result is not known and pair.lead_alike(result, closer))
 
 
 def _pieces_steps(known: MatchResult, pair: PartialPair, least: float) -> Steps[list[CoveredPart]]:

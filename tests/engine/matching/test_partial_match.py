@@ -55,6 +55,11 @@ def result(whole, half):
     return match(whole[0], half[0], QUICK)
 
 
+@pytest.fixture(scope="module")
+def parts(result, whole, half):
+    return result, whole, half
+
+
 def test_no_landmarks_are_as_if_none_were_asked_for(whole, half, result):
     again = match(whole[0], half[0], QUICK, landmarks=[])
     np.testing.assert_array_equal(again.source_to_target.positions, result.source_to_target.positions)
@@ -227,8 +232,17 @@ def test_a_piece_that_is_too_large_shrinks_and_one_that_is_too_small_grows(start
     assert np.mean(errors(found.target_to_source, half[1], whole[1])) < (0.04 if start > 0.05 else 0.02)
 
 
+@pytest.mark.parametrize("way", ["the piece", "the match with another piece"])
 @pytest.mark.parametrize("is_right", [True, False])
-def test_another_search_agrees_with_a_right_map_alone_and_finds_one_either_way(is_right, result, whole, half):
+def test_another_search_agrees_with_a_right_map_alone_and_finds_one_either_way(is_right, way, parts, monkeypatch):
+    result, whole, half = parts
+    search = partial_match.covered_parts_steps
+
+    def pieces_steps(*given):
+        found = yield from search(*given)
+        return found if way == "the piece" else [replace(piece, is_new=True) for piece in found]
+
+    monkeypatch.setattr(partial_match, "covered_parts_steps", pieces_steps)
     known, pair = result.dense, PartialPair(Shape(whole[0]), Shape(half[0]), of_source=True)
     there, back = known.source_to_target, known.target_to_source
     if not is_right:
