@@ -45,7 +45,8 @@ largest offset, and what that counts at most."""
 
 _LYING, _STANDING = 0.9, 0.5
 """Part of the vertices that touch the surroundings from which on a large part lies on them as clothes do, and below
-which one does not; by hand, between what ``python -m tests.benchmarks.clothed`` puts on bodies and their limbs."""
+which one does not; by hand: garments of ``python -m tests.benchmarks.clothed`` touch with all of theirs (looked at
+once)."""
 
 _NOT_POSSIBLE = 20.0
 """No pair costs more than that of leaving a part alone, so that as many as possible are made."""
