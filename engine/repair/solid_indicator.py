@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +18,9 @@ from ..runtime.arrays import Floats
 _MARGIN = 8
 """Places of the grid around the surfaces: the grid goes on at its other side, as Fourier transforms see it."""
 
-_SAMPLES = 12.0
-"""Points that stand for each square of the grid's spacing on the surface."""
+_SAMPLES = 6.0
+"""Points that stand for each square of the grid's spacing on the surface.  With 12 a body's function differs by 0.025 at
+most, by 0.0006 on the mean (tried once)."""
 
 _BLUR = 0.8
 """Standard deviation of the blur, in places of the grid: else the function overshoots at the surface."""
@@ -48,6 +49,19 @@ class SolidIndicator:
     values: NDArray[np.float32]
     origin: Floats
     spacing: float
+
+    def with_surfaces(self, mesh: TriangleMesh) -> SolidIndicator:
+        """Add surfaces near those that are known, on the places that are there: it is linear in them."""
+        low, high = (
+            (end - self.origin) / self.spacing for end in (mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
+        )
+        first = np.floor(low).astype(np.int64) - _MARGIN
+        own = _values(mesh, self.origin + first * self.spacing, self.spacing, _grid(high - first))
+        begin, end = np.maximum(first, 0), np.minimum(first + own.shape, self.values.shape)
+        here, there = (tuple(map(slice, begin - start, end - start)) for start in (np.zeros(3, np.int64), first))
+        values = self.values.copy()
+        values[here] += own[there]
+        return replace(self, values=values)
 
 
 def solid_indicator(mesh: TriangleMesh, spacing: float) -> SolidIndicator:
@@ -79,24 +93,36 @@ def solid_indicator(mesh: TriangleMesh, spacing: float) -> SolidIndicator:
     while np.prod((high - low) / spacing + 2 * _MARGIN) > 2 * MOST_PLACES:  # around needles, margins are most of it
         spacing *= _COARSER
     origin = low - _MARGIN * spacing
-    count = np.ceil((high - origin) / spacing).astype(np.int64) + _MARGIN + 1
-    shape = tuple(next_fast_len(int(number), real=True) for number in count)
+    return SolidIndicator(_values(mesh, origin, spacing, _grid((high - origin) / spacing)), origin, spacing)
+
+
+def _grid(size: Floats) -> tuple[int, ...]:
+    """Numbers of places of a grid of at least that size (3,), and a margin, of which Fourier transforms are fast."""
+    return tuple(next_fast_len(int(number), real=True) for number in np.ceil(size).astype(np.int64) + _MARGIN + 1)
+
+
+def _values(mesh: TriangleMesh, origin: Floats, spacing: float, shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """Compute the indicator function on a grid, see `solid_indicator`."""
     samples = area_samples(mesh, spacing**2 / _SAMPLES)
     spreading = _spreading((samples.positions - origin) / spacing, shape)
     normals = mesh.triangle_normals[samples.triangles] * samples.areas[:, None]
     frequencies = [2 * np.pi * fftfreq(number) for number in shape[:2]] + [2 * np.pi * rfftfreq(shape[2])]
     waves = np.meshgrid(*(wave.astype(np.float32) for wave in frequencies), indexing="ij", sparse=True)
     squares = waves[0] ** 2 + waves[1] ** 2 + waves[2] ** 2
+    squares[0, 0, 0] = 1.0
     solved = np.zeros(squares.shape, np.complex64)
     for wave, normal in zip(waves, normals.T, strict=True):
-        solved += 1j * wave * rfftn((spreading @ normal).astype(np.float32).reshape(shape))
-    squares[0, 0, 0] = 1.0
-    solved *= np.exp(-(_BLUR**2) / 2 * squares) / (squares * spacing**2)
+        transform = rfftn((spreading @ normal).astype(np.float32).reshape(shape))
+        transform *= wave
+        solved += transform
+    solved *= 1j / (squares * spacing**2)
+    for wave in waves:
+        solved *= np.exp(-(_BLUR**2) / 2 * wave**2)
     solved[0, 0, 0] = 0
     values = irfftn(solved, s=shape)
     # The equation leaves a constant open: far from everything is outside.
     faces = [np.take(values, (0, -1), axis=axis).ravel() for axis in range(3)]
-    return SolidIndicator(values - np.median(np.concatenate(faces)), origin, spacing)
+    return values - np.median(np.concatenate(faces))
 
 
 def _spreading(places: Floats, shape: tuple[int, ...]) -> csc_array:

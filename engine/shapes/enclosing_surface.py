@@ -20,14 +20,14 @@ from ..repair.clean_surface import CleanSurface, StandIn, SurfacePart
 from ..repair.cleaning import clean
 from ..repair.cleaning_notes import cleaning_notes
 from ..repair.gap_bridges import bridged
-from ..repair.solid_indicator import solid_indicator
+from ..repair.solid_indicator import SolidIndicator, solid_indicator
 from ..repair.surface_nets import surface_net
 from ..runtime.arrays import Bools, Floats, Ints
 from ..runtime.errors import MeshError
 from ..runtime.parallel_map import MOST_SENT, here_steps, shared_steps
 from ..runtime.progress import Progress, Steps, within
 from .openwork import FLAT, filled_openwork, is_openwork
-from .proxy import Proxy, proxy_steps
+from .proxy import Proxy, coarse_mesh_steps
 from .shape import Shape
 
 _LYING, _ITS_OWN = 0.04, 0.25
@@ -183,15 +183,22 @@ def _joined_steps(_: None, body: tuple[CleanSurface, str, int]) -> Steps[CleanSu
     apart = max(_SPACING, _PER_VERTEX / np.sqrt(most))
     unit = float(np.sqrt(sum(piece.area for piece in compress(pieces, taking_part))))
     pieces = [filled_openwork(each, apart * unit, _WIDEST * unit) if is_openwork(each) else each for each in pieces]
-    skin = yield from within(_skin_steps(pieces, taking_part, ~taking_part, apart), 0.0, 0.5, _LABEL)
+    yield Progress(0.0, _LABEL)
+    solid = solid_indicator(_solids(compress(pieces, taking_part)), apart * unit)
+    skin = yield from within(_skin_steps(solid, unit), 0.2, 0.4, _LABEL)
     lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part
     if (taking_part & ~lying).any():
-        taking_part |= _between(pieces, taking_part & lying, taking_part & ~lying)
-        skin = yield from within(_skin_steps(pieces, taking_part, ~lying, apart), 0.5, 0.6, _LABEL)
+        more = _between(pieces, taking_part & lying, taking_part & ~lying) & ~taking_part
+        taking_part |= more
+        if more.any():
+            solid = solid.with_surfaces(_solids(compress(pieces, more)))
+        for thin in compress(pieces, taking_part & ~lying):
+            _fill(solid, _midst(thin, solid.spacing))
+        skin = yield from within(_skin_steps(solid, unit), 0.4, 0.6, _LABEL)
         lying = _lying_on(skin, pieces, apart) if skin is not None else taking_part
     if skin is None:
         return None
-    coarse = yield from within(proxy_steps(skin, most), 0.6, 0.9, _LABEL)
+    coarse = yield from within(coarse_mesh_steps(skin, most), 0.6, 0.9, _LABEL)
     # What is too far away from all else was not reached.
     taking_part &= lying
     if not taking_part[0] or taking_part.sum() == 1:
@@ -200,7 +207,7 @@ def _joined_steps(_: None, body: tuple[CleanSurface, str, int]) -> Steps[CleanSu
     number = np.cumsum(~taking_part)
     number[taking_part] = 0
     parts = np.append(number, -1)[cleaned.vertex_parts]
-    main = pieced.stand_in(coarse.mesh, cleaned)
+    main = pieced.stand_in(coarse, cleaned)
     yield Progress(1.0, _LABEL)
     nearest = main.mesh.triangles[main.place_triangles, main.place_barycentric.argmax(axis=1)]
     others = tuple(compress(cleaned.pieces, ~taking_part))
@@ -216,23 +223,22 @@ def _joined_steps(_: None, body: tuple[CleanSurface, str, int]) -> Steps[CleanSu
     )
 
 
-def _skin_steps(
-    pieces: Sequence[TriangleMesh], taking_part: Bools, thin: Bools, apart: float
-) -> Steps[TriangleMesh | None]:
-    """Find the surface around pieces (p,) that take part, some too thin for the grid; None if they have no inside.
+def _solids(pieces: Iterable[TriangleMesh]) -> TriangleMesh:
+    """Take of pieces, turned outward, the triangles that are around an inside."""
+    mesh, _, solids = _outward(pieces)
+    return TriangleMesh(mesh.vertices, mesh.triangles[solids])
 
-    The places of the grid are that far apart, in sqrt(area).
-    """
-    mesh, _, solids = _outward(compress(pieces, taking_part))
-    unit = float(np.sqrt(mesh.area))
-    yield Progress(0.0, _LABEL)
-    solid = solid_indicator(TriangleMesh(mesh.vertices, mesh.triangles[solids]), apart * unit)
-    for number in np.flatnonzero(taking_part & thin):
-        places = np.rint((_midst(pieces[number], solid.spacing) - solid.origin) / solid.spacing).astype(np.int64)
-        solid.values[tuple(places.T)] = np.maximum(solid.values[tuple(places.T)], (1 + _LEVEL) / 2)
-    yield Progress(0.6, _LABEL)
+
+def _fill(solid: SolidIndicator, points: Floats) -> None:
+    """Make the places of a grid that points (k, 3) are nearest to a part of the inside."""
+    places = tuple(np.rint((points - solid.origin) / solid.spacing).astype(np.int64).T)
+    solid.values[places] = np.maximum(solid.values[places], (1 + _LEVEL) / 2)
+
+
+def _skin_steps(solid: SolidIndicator, unit: float) -> Steps[TriangleMesh | None]:
+    """Find the surface around an inside, bridging gaps in a body of that sqrt(area); None if there is no inside."""
     values = bridged(solid.values, _LEVEL, _WIDEST * unit / solid.spacing)
-    yield Progress(0.9, _LABEL)
+    yield Progress(0.5, _LABEL)
     places, triangles = surface_net(values, _LEVEL)
     if not len(triangles):
         return None
@@ -265,13 +271,14 @@ def _midst(piece: TriangleMesh, spacing: float) -> Floats:
 
 def _between(pieces: Sequence[TriangleMesh], reached: Bools, lost: Bools) -> Bools:
     """Tell which pieces (p,) touch two of the body, one of them not reached, or if no larger than those, any two."""
-    touching, areas = np.zeros((2, len(pieces)), np.int64), np.array([piece.area for piece in pieces])
+    areas = np.array([piece.area for piece in pieces])
     samples = [even_samples(piece, areas.sum() / SAMPLES).positions for piece in pieces]
-    near = BESIDE * np.sqrt(areas.sum())
-    for counts, side in zip(touching, (reached, lost), strict=True):
-        for number in np.flatnonzero(side):
-            tree = cKDTree(samples[number])
-            counts += [np.isfinite(tree.query(own, distance_upper_bound=near)[0]).any() for own in samples]
+    owners = np.repeat(np.arange(len(pieces)), [len(own) for own in samples])
+    near = cKDTree(np.concatenate(samples)).query_pairs(BESIDE * np.sqrt(areas.sum()), output_type="ndarray")
+    touch = np.eye(len(pieces), dtype=bool)
+    touch[tuple(owners[near].T)] = True
+    touch |= touch.T
+    touching = np.stack([touch[:, side].sum(axis=1) for side in (reached, lost)])
     return ((touching[1] > 0) | (areas <= areas[lost].max())) & (touching.sum(axis=0) > 1)
 
 

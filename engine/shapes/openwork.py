@@ -39,9 +39,11 @@ pieces of wire of the robot of ``docs/results.md`` once is not enough (tried onc
 
 def is_openwork(mesh: TriangleMesh) -> bool:
     """Say whether a connected piece has many holes through it, and hardly an inside of its own."""
-    if not mesh.is_closed or genus(mesh) < _HANDLES:
+    if not mesh.is_closed:
         return False
-    return bool(abs(enclosed_volumes(mesh)[1].sum()) < FLAT * mesh.area**1.5)
+    corners = mesh.vertices[mesh.triangles] - mesh.vertices[0]
+    volume = float(np.linalg.det(corners).sum()) / 6
+    return abs(volume) < FLAT * mesh.area**1.5 and genus(mesh) >= _HANDLES
 
 
 def filled_openwork(mesh: TriangleMesh, spacing: float, hole: float) -> TriangleMesh:

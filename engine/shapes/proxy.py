@@ -137,15 +137,14 @@ def proxy_steps(mesh: TriangleMesh, vertices: int = MATCHED) -> Steps[Proxy]:
     .. [1] R. Cook, "Stochastic sampling in computer graphics", ACM Transactions on Graphics 5, 1986.
     .. [2] S. Lloyd, "Least squares quantization in PCM", IEEE Transactions on Information Theory 28, 1982.
     """
-    if mesh.vertex_count <= _LARGE * vertices:
-        return Proxy.identity(mesh)
-    regions, kept = yield from within(_divided_steps(mesh, vertices), 0.0, 0.3)
-    if len(kept) < _GOOD_PART * len(regions.dual.triangles):
-        regions, kept = yield from within(_divided_steps(mesh, int(_FINER * vertices)), 0.3, 0.6)
-    if not len(kept) or len(regions.seeds) > mesh.vertex_count / 2:
-        return Proxy.identity(mesh)
-    yield Progress(0.6, "Simplifying the mesh")
-    return (yield from _fitted(mesh, regions, kept))
+    fitted = yield from within(_fitted_steps(mesh, vertices), 0.0, 0.75)
+    return Proxy.identity(mesh) if fitted is None else (yield from within(_placed_steps(mesh, *fitted), 0.75, 1.0))
+
+
+def coarse_mesh_steps(mesh: TriangleMesh, vertices: int) -> Steps[TriangleMesh]:
+    """Find the mesh of the proxy alone, see `proxy_steps`."""
+    fitted = yield from _fitted_steps(mesh, vertices)
+    return mesh if fitted is None else _mesh_of(fitted[0])
 
 
 def _divided_steps(mesh: TriangleMesh, count: int) -> Steps[tuple[VoronoiRegions, Ints]]:
@@ -165,42 +164,57 @@ def _divided_steps(mesh: TriangleMesh, count: int) -> Steps[tuple[VoronoiRegions
     return regions, np.arange(len(triangles))
 
 
-def _fitted(mesh: TriangleMesh, regions: VoronoiRegions, kept: Ints) -> Steps[Proxy]:
-    """Make a proxy of the kept triangles of a triangulation, and fit it to the mesh."""
+def _fitted_steps(mesh: TriangleMesh, vertices: int) -> Steps[tuple[ClosestPoints, Ints] | None]:
+    """Fit a coarse triangulation to a mesh, see `proxy_steps`; None if the mesh is to stand for itself.
+
+    Returned are the search on it, and which of its vertices is about where each of the mesh is, (n,), -1 where none is.
+    """
+    if mesh.vertex_count <= _LARGE * vertices:
+        return None
+    regions, kept = yield from within(_divided_steps(mesh, vertices), 0.0, 0.4)
+    if len(kept) < _GOOD_PART * len(regions.dual.triangles):
+        regions, kept = yield from within(_divided_steps(mesh, int(_FINER * vertices)), 0.4, 0.8)
+    if not len(kept) or len(regions.seeds) > mesh.vertex_count / 2:
+        return None
     cells = regions.cells
     used, triangles = np.unique(regions.dual.triangles[kept], return_inverse=True)
-    triangles = triangles.reshape(-1, 3)
-    number = numbered(used, len(regions.seeds))
-    n = mesh.vertex_count
-    place = number[regions.labels[cells.labels]]
-    coarse = TriangleMesh(_first_positions(regions)[used], triangles)
+    place = numbered(used, len(regions.seeds))[regions.labels[cells.labels]]
+    search = ClosestPoints(TriangleMesh(_first_positions(regions)[used], triangles.reshape(-1, 3)))
 
     # One vertex of each cell speaks for all in the fit.
     samples = cells.nearest_vertices(mesh.vertices)
     known = np.flatnonzero(place[samples] >= 0)
     samples, weights = samples[known], cells.areas[known]
-    search = ClosestPoints(coarse)
     for fit in range(_FITS):
+        yield Progress(0.8 + 0.1 * fit, "Simplifying the mesh")
         part = slice(None, None, _FITS - fit)  # at first, fewer do
         wanted = mesh.vertices[samples[part]]
         found = search.walk(wanted, place[samples[part]])
         search = search.moved(_fitted_positions(search, found, wanted, weights[part]))
-        yield Progress(0.65 + 0.05 * fit, "Simplifying the mesh")
+    return search, place
 
-    coarse = TriangleMesh(search.vertices, triangles)
+
+def _placed_steps(mesh: TriangleMesh, search: ClosestPoints, place: Ints) -> Steps[Proxy]:
+    """Find the place of each vertex of a mesh on a coarse one, from the vertices (n,) where it about is."""
+    n, coarse = mesh.vertex_count, _mesh_of(search)
     lost = np.flatnonzero(place < 0)
     place[lost] = search.nearest_vertices(mesh.vertices[lost])
     where, barycentric = np.empty(n, np.int64), np.empty((n, 3))
     for part in slices(n, _STEP):
-        yield Progress(0.75 + 0.25 * part.start / n, "Simplifying the mesh")
+        yield Progress(part.start / n, "Simplifying the mesh")
         found = search.walk(mesh.vertices[part], place[part])
         where[part], barycentric[part] = found.triangles, found.barycentric
 
     offsets = mesh.vertices - coarse.vertices[place]
     distances = np.einsum("nd,nd->n", offsets, offsets)
     distances[lost] = np.inf
-    vertices = nearest_members(place, distances, len(used))
+    vertices = nearest_members(place, distances, coarse.vertex_count)
     return Proxy(coarse, SurfacePoints.from_barycentric(coarse, where, barycentric), vertices)
+
+
+def _mesh_of(search: ClosestPoints) -> TriangleMesh:
+    """Take the surface of a search for a mesh."""
+    return TriangleMesh(search.vertices, search.triangles)
 
 
 def _first_positions(regions: VoronoiRegions) -> Floats:

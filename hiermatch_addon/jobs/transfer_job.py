@@ -13,6 +13,7 @@ from ..common.errors import DoubtfulMatchError, NothingToCarryError, ObjectError
 from ..properties.preferences import shape_memory
 from ..scene.armatures import armature_of, find_armature, read_rig
 from ..scene.character import SideReference, positions_of, read_surface, topology_of, whole
+from ..scene.deform_layer import reading_once
 from ..scene.pair import check_pair, check_side, is_own
 from ..scene.posing.before_after import show_after
 from ..storage.halves import find_common
@@ -242,12 +243,13 @@ class TransferJob(SteppedJob):
         every = whole(source)
         self._whole = self._mesh if every == source else read_surface(every, depsgraph, use_modifiers=False)
         self._legs: list[_Leg] = []
-        for target in targets:
-            leg = _Leg(context, source, target, options, writes=writes)
-            leg.read(context, source, target, make())
-            self._legs.append(leg)
-        wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
-        self._rig: SourceRig | None = read_rig(source) if wanted else None
+        with reading_once():
+            for target in targets:
+                leg = _Leg(context, source, target, options, writes=writes)
+                leg.read(context, source, target, make())
+                self._legs.append(leg)
+            wanted = any(transfer.uses_rig for leg in self._legs for transfer in leg.transfers)
+            self._rig: SourceRig | None = read_rig(source) if wanted else None
         self._known = known_shapes(shape_memory(context))
         super().__init__()
 

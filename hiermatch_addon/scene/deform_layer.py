@@ -8,6 +8,8 @@ at once.  The mesh itself is never rebuilt, so nothing else on it can change.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,10 +20,23 @@ from ..common.errors import ObjectError
 from .pair import check_own_mesh, check_writable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     import bpy
     from numpy.typing import NDArray
+
+_read_once: ContextVar[dict[int, csr_array] | None] = ContextVar("_read_once", default=None)
+"""What was read of each object, by its address, while `reading_once` is in force."""
+
+
+@contextmanager
+def reading_once() -> Iterator[None]:
+    """Read the weights of each object once, however often they are asked for: nothing may be written meanwhile."""
+    token = _read_once.set({})
+    try:
+        yield
+    finally:
+        _read_once.reset(token)
 
 
 def check_weights_writable(obj: bpy.types.Object) -> None:
@@ -110,6 +125,17 @@ def write_weights(obj: bpy.types.Object, names: Sequence[str], weights: csr_arra
 
 def _stored(obj: bpy.types.Object) -> csr_array:
     """Read what is stored, (n, g or more), from 0 to 1: entries may be zero, no number, or of groups that are gone."""
+    kept = _read_once.get()
+    if kept is None:
+        return _freshly_stored(obj)
+    address = obj.as_pointer()
+    if address not in kept:
+        kept[address] = _freshly_stored(obj)
+    return kept[address].copy()
+
+
+def _freshly_stored(obj: bpy.types.Object) -> csr_array:
+    """Read what is stored, whatever was read before."""
     mesh = mesh_of(obj)
     groups: list[Any] = []
     weights: list[float] = []

@@ -7,7 +7,13 @@ import bpy
 import numpy as np
 import pytest
 from hiermatch.hiermatch_addon.common.errors import ObjectError
-from hiermatch.hiermatch_addon.scene.deform_layer import check_weights_writable, read_group, read_weights, write_weights
+from hiermatch.hiermatch_addon.scene.deform_layer import (
+    check_weights_writable,
+    read_group,
+    read_weights,
+    reading_once,
+    write_weights,
+)
 from scipy.sparse import csr_array
 
 from tests.addon.scenes import add_blob, mesh_snapshot, weights_of
@@ -159,3 +165,25 @@ def test_linked_objects_are_refused(tmp_path):
     obj = bpy.data.objects["Blob"]
     with pytest.raises(ObjectError, match="Make Local"):
         check_weights_writable(obj)
+
+
+def test_what_is_read_once_is_read_anew_afterwards(blob):
+    group = blob.vertex_groups.new(name="Group")
+    group.add([0], 0.25, "REPLACE")
+    with reading_once():
+        first = read_weights(blob)
+        first.data[:] = 1  # whoever gets it may change it
+        group.add([0], 0.75, "REPLACE")
+        assert read_weights(blob)[0, 0] == 0.25
+        assert read_group(blob, "Group")[0] == 0.25
+    assert read_weights(blob)[0, 0] == 0.75
+
+
+def test_after_an_error_weights_are_read_anew(blob):
+    group = blob.vertex_groups.new(name="Group")
+    group.add([0], 0.25, "REPLACE")
+    with pytest.raises(ValueError, match="of a reader"), reading_once():
+        read_weights(blob)
+        raise ValueError("of a reader")
+    group.add([0], 0.75, "REPLACE")
+    assert read_weights(blob)[0, 0] == 0.75

@@ -45,6 +45,35 @@ def test_an_opening_fades():
     assert at(solid, [0, 0, 1.2]) == pytest.approx(0, abs=0.2)
 
 
+@pytest.mark.parametrize("shift", [[0.5, 0, 0], [0.9, 0.9, 0.9], [-1.7, 0.2, 0]])
+def test_surfaces_that_are_added_later_count_as_those_at_once(shift):
+    ball, triangles = icosphere(12)
+    large, small = (2 * ball, triangles), (0.4 * ball + shift, triangles)
+    begun = solid_indicator(TriangleMesh(*large), 0.05)
+    before = begun.values.copy()
+    added = begun.with_surfaces(TriangleMesh(*small))
+    alone = solid_indicator(TriangleMesh(*small), 0.05)
+    assert np.array_equal(begun.values, before)
+    assert (added.spacing, added.origin.tolist()) == (begun.spacing, begun.origin.tolist())
+    for point in np.random.default_rng(0).uniform(-0.6, 0.6, (50, 3)) + shift:
+        near = np.abs(np.linalg.norm(point - shift) - 0.4) < 0.15  # where a place may be on either side
+        inside = np.linalg.norm(point - shift) < 0.4
+        if not near:
+            assert at(added, point) - at(begun, point) == pytest.approx(float(inside), abs=0.03)
+    at_once = at(solid_indicator(TriangleMesh(*together(large, small)), 0.05), shift)
+    assert at(added, shift) == pytest.approx(at_once, abs=0.03)
+    assert at(alone, shift) == pytest.approx(1, abs=0.03)
+
+
+def test_surfaces_that_reach_beyond_the_places_are_cut_off_there():
+    ball, triangles = icosphere(12)
+    begun = solid_indicator(TriangleMesh(ball, triangles), 0.05)
+    added = begun.with_surfaces(TriangleMesh(3 * ball, triangles))
+    assert added.values.shape == begun.values.shape
+    assert at(added, [0, 0, 0]) == pytest.approx(2, abs=0.03)
+    assert at(added, [0, 0, 1.3]) == pytest.approx(1, abs=0.03)
+
+
 def test_inside_out_is_outside():
     vertices, triangles = icosphere(8)
     solid = solid_indicator(TriangleMesh(vertices, triangles[:, ::-1]), 0.05)

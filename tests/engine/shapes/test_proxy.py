@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from engine import TriangleMesh, run
 from engine.geometry.eigenpairs import eigenpairs_steps
 from engine.repair.cleaning import clean
-from engine.shapes.proxy import Proxy, proxy_steps
+from engine.shapes.proxy import Proxy, coarse_mesh_steps, proxy_steps
 from tests.bodies import mirrored_body
 from tests.shapes import (
     compacted,
@@ -303,3 +303,11 @@ def test_proxies_are_reproducible_and_report_progress(body, body_proxy):
     assert not again.is_identity
     assert fractions == sorted(fractions)
     assert 0 <= fractions[0] <= fractions[-1] <= 1
+
+
+@pytest.mark.parametrize("vertices", [300, 5000])
+def test_the_coarse_mesh_alone_is_that_of_the_proxy(vertices):
+    mesh = TriangleMesh(*irregular(*icosphere(14), seed=1))
+    alone, whole = run(coarse_mesh_steps(mesh, vertices)), run(proxy_steps(mesh, vertices)).mesh
+    assert np.array_equal(alone.vertices, whole.vertices)
+    assert np.array_equal(alone.triangles, whole.triangles)
