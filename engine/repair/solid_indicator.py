@@ -18,9 +18,9 @@ from ..runtime.arrays import Floats
 _MARGIN = 8
 """Places of the grid around the surfaces: the grid goes on at its other side, as Fourier transforms see it."""
 
-_SAMPLES = 6.0
-"""Points that stand for each square of the grid's spacing on the surface.  With 12 a body's function differs by 0.025 at
-most, by 0.0006 on the mean (tried once)."""
+_SAMPLES = 12.0
+"""Points that stand for each square of the grid's spacing on the surface.  With 6 a body's function differs by 0.025 at
+most, but from one mannequin to the other a finger was off by 6.7 % of the height, by 2.9 with 12 (tried once)."""
 
 _BLUR = 0.8
 """Standard deviation of the blur, in places of the grid: else the function overshoots at the surface."""

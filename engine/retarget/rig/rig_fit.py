@@ -237,7 +237,13 @@ class _Evidence:
     skeleton: Skeleton
 
     def bones(
-        self, positions: Floats, back: FoundPoints, forward_shares: Floats, back_shares: Floats
+        self,
+        positions: Floats,
+        back: FoundPoints,
+        forward_shares: Floats,
+        back_shares: Floats,
+        *,
+        begun: BoneTransforms | None = None,
     ) -> BoneTransforms:
         """Fit the bones.
 
@@ -249,6 +255,8 @@ class _Evidence:
             Images of the target's vertices on the body, m.
         forward_shares, back_shares : (n,) and (m,) array of float
             How much each counts.
+        begun : BoneTransforms, optional
+            The bones before the body slid, see `fit_bones`.
 
         Returns
         -------
@@ -260,7 +268,7 @@ class _Evidence:
         there = np.concatenate([positions, self.target.vertices])
         shares = np.concatenate([forward_shares, back_shares])
         weights = csr_array(vstack([self.weights, evaluate @ self.weights]))
-        fitted = fit_bones(vertices, there, shares, weights, self.skeleton)
+        fitted = fit_bones(vertices, there, shares, weights, self.skeleton, begun=begun)
         return replace(fitted, posed=fitted.posed[: len(positions)])
 
 
@@ -312,7 +320,8 @@ def _sliding_steps(
         yield done[0]
         matches = registration.matched(positions)
         yield done[1]
-        bones = evidence.bones(positions, matches, *shares)
+        is_last = number == len(_STIFFNESS) - 1  # from anew, so that nothing lags behind
+        bones = evidence.bones(positions, matches, *shares, begun=None if is_last else bones)
         posed = bones.posed
         yield done[2]
     covered = matches.squared_distances <= _NEAR**2 * target.area

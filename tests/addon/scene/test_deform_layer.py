@@ -182,8 +182,7 @@ def test_what_is_read_once_is_read_anew_afterwards(blob):
 def test_after_an_error_weights_are_read_anew(blob):
     group = blob.vertex_groups.new(name="Group")
     group.add([0], 0.25, "REPLACE")
-    with pytest.raises(ValueError, match="of a reader"), reading_once():
-        read_weights(blob)
-        raise ValueError("of a reader")
+    with pytest.raises(KeyError), reading_once():
+        blob.data.attributes[str(read_weights(blob).shape)]
     group.add([0], 0.75, "REPLACE")
     assert read_weights(blob)[0, 0] == 0.75

@@ -99,3 +99,21 @@ def test_what_nobody_knows_does_not_count(body):
     spoiled[::7] += 100
     known = fit_bones(vertices, spoiled, areas, weights, skeleton)
     assert np.abs(known.posed - positions).max() < 5e-3
+
+
+def test_from_bones_that_are_nearly_right_the_same_are_found(body):
+    vertices, weights, skeleton, names = body
+    areas, random = np.ones(len(vertices)), np.random.default_rng(1)
+    before = skinned(vertices, weights, *pose(skeleton, angle=0.5))
+    positions = skinned(vertices, weights, *pose(skeleton, angle=0.52))
+    lost = random.random(len(vertices)) < 0.1  # what is not to be trusted
+    positions[lost] += random.normal(0, 0.3, (lost.sum(), 3))
+    whole = fit_bones(vertices, positions, areas, weights, skeleton)
+    begun = fit_bones(vertices, before, areas, weights, skeleton)
+    found = fit_bones(vertices, positions, areas, weights, skeleton, begun=begun)
+    moving = np.array([name not in CONTROLS for name in names])
+    apart = np.linalg.norm(found.posed - whole.posed, axis=1)
+    assert apart.max() < 0.02
+    assert apart.mean() < 0.2 * np.linalg.norm(begun.posed - whole.posed, axis=1).mean()
+    turned = Rotation.from_matrix(found.rotations @ whole.rotations.transpose(0, 2, 1)).magnitude()
+    assert turned[moving].max() < np.radians(5)
