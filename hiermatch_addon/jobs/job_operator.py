@@ -14,6 +14,7 @@ from ..common.access import window_manager_of
 from ..common.redraw import redraw_sidebars, redraw_views
 from ..common.translated_text import translated
 from ..properties.panel_state import progress_of
+from .running import Startable
 from .shown_preview import show_preview
 
 if TYPE_CHECKING:
@@ -22,10 +23,6 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
     from ...engine import Preview, Progress
-
-    _Operator = bpy.types.Operator
-else:
-    _Operator = object
 
 _SLICE = 0.05
 """Seconds of work between two events, so that the window stays responsive."""
@@ -56,7 +53,7 @@ class Job(Protocol):
         """Drop the work."""
 
 
-class JobOperator(_Operator):
+class JobOperator(Startable):
     """What operators that do a job have in common; to be inherited from before `bpy.types.Operator`.
 
     Attributes

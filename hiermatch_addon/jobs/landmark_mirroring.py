@@ -10,9 +10,9 @@ import numpy as np
 from ...engine import symmetry_map_steps, within
 from ..common.access import view_layer_of
 from ..common.errors import ObjectError
-from ..scene.character import SideReference, positions_of, read_surface, topology_of
+from ..scene.character import ReadSide, read_surface
 from ..scene.pair import check_pair
-from ..storage.halves import find_common
+from ..storage.halves import find_common, in_order
 from ..storage.landmarks import add_landmarks, find_landmarks, landmark_array
 from ..storage.vertex_maps import StoredMaps, map_name
 from .stepped_job import SteppedJob
@@ -70,7 +70,7 @@ class MirrorJob(SteppedJob):
                 f'"{source.name}" and "{target.name}" have no landmarks in common that are on. Add some first.'
             )
         self._landmarks = found
-        self._objects = tuple((SideReference.of(side), _state(side)) for side in (source, target))
+        self._objects = (ReadSide.of(source), ReadSide.of(target))
         self._meshes = tuple(read_surface(obj, depsgraph, use_modifiers=False) for obj in (source, target))
         self._maps = _fresh_maps(source, target)
         self._images: list[NDArray[np.int64]] = []
@@ -86,13 +86,7 @@ class MirrorJob(SteppedJob):
         ObjectError
             If the objects have changed.
         """
-        objects = []
-        for reference, state in self._objects:
-            obj = reference.find()
-            if obj is None or _state(obj) != state:
-                raise ObjectError(f'"{reference.name}" was deleted or edited meanwhile. No landmark was added.')
-            objects.append(obj)
-        source, target = objects
+        source, target = (read.unchanged() for read in self._objects)
         check_pair(None, source, target)
         taken = {vertex for landmark in find_landmarks(source, target) for vertex in [("s", landmark.source)]}
         taken |= {("t", landmark.target) for landmark in find_landmarks(source, target)}
@@ -113,7 +107,7 @@ class MirrorJob(SteppedJob):
         """Find the symmetry of one mesh after the other."""
         for number, mesh in enumerate(self._meshes):
             dense = yield from within(symmetry_map_steps(mesh), number / 2, (number + 1) / 2)
-            name = self._objects[number][0].name
+            name = self._objects[number].name
             self.notes.extend(filter(None, [asymmetry_note(name, dense.quality)]))
             self._images.append(dense.source_to_target.nearest_vertices[self._landmarks[:, number]])
 
@@ -136,15 +130,11 @@ def _fresh_maps(source: Side, target: Side) -> StoredMaps | None:
     """Read the dense maps of a match that is not out of date, from source to target; None if there is none."""
     for half, partner in find_common(source, target):
         if not (half.staleness() or partner.staleness()):
-            first, second = (half, partner) if half.role == "source" else (partner, half)
+            first, second = in_order(half, partner)
             maps = StoredMaps.read(first.obj, second.obj, map_name(half.prefix))
             if maps is not None:
                 return maps if first is half else maps.reverse
     return None
-
-
-def _state(side: Side) -> tuple[str, str]:
-    return topology_of(side), positions_of(side)
 
 
 def _in_middle(mesh: TriangleMesh, vertex: int, image: int) -> bool:

@@ -435,12 +435,7 @@ class MatchJob(SteppedJob):
 
     def _objects(self) -> list[Side]:
         """Look the objects up again and make sure that they still have the vertices that were read."""
-        objects: list[Side] = []
-        for reference in self._references:
-            found = reference.find()
-            if found is None:
-                raise ObjectError(f'"{reference.name}" was deleted while it was being matched. Nothing was written.')
-            objects.append(found)
+        objects = [reference.found() for reference in self._references]
         for obj, mesh in zip(objects, self._meshes, strict=True):
             if vertex_count(obj) != mesh.vertex_count:
                 raise ObjectError(

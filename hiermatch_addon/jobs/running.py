@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import bpy
 
 from ..common.access import window_manager_of
 from ..common.translated_text import translated
+
+if TYPE_CHECKING:
+    _Operator = bpy.types.Operator
+else:
+    _Operator = object
 
 
 def is_running(window_manager: bpy.types.WindowManager) -> bool:
@@ -56,26 +61,34 @@ def start_soon(context: bpy.types.Context, operator: str, **options: Any) -> Non
     bpy.app.timers.register(start, first_interval=0.0)
 
 
-def is_idle(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Tell, and say on the disabled button, whether no job of ours is running."""
-    if is_running(window_manager_of(context)):
-        cls.poll_message_set(translated("HierMatch is at work. Wait for it, or cancel it"))
-        return False
-    return True
+class Startable(_Operator):
+    """An operator that starts only while no job of ours runs; to be inherited from before `bpy.types.Operator`.
 
-
-def can_start(
-    cls: type[bpy.types.Operator], context: bpy.types.Context, *, posing: bool = False, painting: bool = False
-) -> bool:
-    """Tell, and say on the disabled button, whether an operator that writes on objects may start.
-
-    One that is about armatures may do so while they are posed, too, and one that leaves meshes alone while weights are
-    painted.
+    Attributes
+    ----------
+    modes : tuple of str
+        The modes in which it may start; any if there are none.
     """
-    if not is_idle(cls, context):
-        return False
-    modes = ("OBJECT", *(["POSE"] if posing else []), *(["PAINT_WEIGHT"] if painting else []))
-    if context.mode not in modes:
-        cls.poll_message_set(translated("Switch to Object Mode first"))
-        return False
-    return True
+
+    bl_options = {"REGISTER", "UNDO"}
+    modes: tuple[str, ...] = ("OBJECT",)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tell whether it may start, and say on the disabled button why not."""
+        if is_running(window_manager_of(context)):
+            said = translated("HierMatch is at work. Wait for it, or cancel it")
+        elif not cls.modes or context.mode in cls.modes:
+            said = cls._lacking(context)
+        elif "EDIT_MESH" in cls.modes:
+            said = translated("Switch to Object Mode or to Edit Mode first")
+        else:
+            said = translated("Switch to Object Mode first")
+        if said:
+            cls.poll_message_set(said)
+        return not said
+
+    @classmethod
+    def _lacking(cls, _context: bpy.types.Context) -> str:
+        """Say what else it takes to start, in the language of the interface; empty if nothing is missing."""
+        return ""

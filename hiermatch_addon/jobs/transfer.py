@@ -71,8 +71,8 @@ class Transfer(Protocol):
     """
 
     label: str
-    uses_rig: bool
-    mirrors: bool
+    uses_rig: bool = True
+    mirrors: bool = True
 
     def read(self, context: bpy.types.Context, source: Side, target: Side) -> None:
         """Read everything from all objects of both sides and make sure that it can be written.

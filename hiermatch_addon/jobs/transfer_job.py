@@ -417,10 +417,4 @@ class TransferJob(SteppedJob):
 
     def _objects(self) -> tuple[Side, list[Side]]:
         """Look the objects up again."""
-        found: list[Side] = []
-        for reference in (self._source, *(leg.reference for leg in self._legs)):
-            side = reference.find()
-            if side is None:
-                raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
-            found.append(side)
-        return found[0], found[1:]
+        return self._source.found(), [leg.reference.found() for leg in self._legs]

@@ -11,7 +11,7 @@ import bpy
 from ..common.access import mesh_of, view_layer_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
-from ..jobs.running import can_start
+from ..jobs.running import Startable
 from ..properties.panel_state import picked, state_of
 from ..properties.steering_lists import sync_lists
 from ..scene.character import parts_of, side_of
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_clear(bpy.types.Operator):
+class HIERMATCH_OT_clear(Startable, bpy.types.Operator):
     """Remove what matches have written on some objects."""
 
     bl_idname = "hiermatch.clear"
@@ -33,7 +33,6 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
         "Remove what matches have written on Source, Target and the selected meshes; landmarks and what was carried "
         "over stay"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     object: bpy.props.StringProperty(
         name="Object",
@@ -47,15 +46,11 @@ class HIERMATCH_OT_clear(bpy.types.Operator):
     )
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when there is something to remove."""
-        if not can_start(cls, context):
-            return False
+    def _lacking(cls, context: bpy.types.Context) -> str:
         meshes = (obj for obj in view_layer_of(context).objects if obj.type == "MESH")
-        if not any(is_marked(mesh_of(obj)) or has_linked(obj) for obj in meshes):
-            cls.poll_message_set(translated("There is nothing here that HierMatch has written"))
-            return False
-        return True
+        if any(is_marked(mesh_of(obj)) or has_linked(obj) for obj in meshes):
+            return ""
+        return translated("There is nothing here that HierMatch has written")
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..demo.demo_pair import add_demo_pair
-from ..jobs.running import can_start
+from ..jobs.running import Startable
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
+class HIERMATCH_OT_add_demo_pair(Startable, bpy.types.Operator):
     """Add a standing and a walking cat to match, with different meshes."""
 
     bl_idname = "hiermatch.add_demo_pair"
     bl_label = "Add Demo Pair"
     bl_description = "Add the same cat twice, in two poses and with two different meshes, to try the matching on"
-    bl_options = {"REGISTER", "UNDO"}
 
     source_vertices: bpy.props.IntProperty(
         name="Source Vertices",
@@ -42,11 +41,6 @@ class HIERMATCH_OT_add_demo_pair(bpy.types.Operator):
         name="Rigged",
         description="Give the standing cat an armature, weights, shape keys and a UV map, to try Retarget on",
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode."""
-        return can_start(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Build the cats."""

@@ -12,7 +12,7 @@ from bpy_extras.io_utils import ExportHelper
 
 from ..common.access import view_layer_of
 from ..common.translated_text import translated
-from ..jobs.running import can_start
+from ..jobs.running import Startable
 from ..properties.panel_state import picked, state_of
 from ..scene.pair import find_pair, selected_meshes
 from ..storage.halves import find_keyed
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ..scene.character import Side
 
 
-class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
+class HIERMATCH_OT_export_match(ExportHelper, Startable, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
     """Write the match of two objects into a file."""
 
     bl_idname = "hiermatch.export_match"
@@ -67,11 +67,6 @@ class HIERMATCH_OT_export_match(ExportHelper, bpy.types.Operator):  # type: igno
         description="What the names start with that the match wrote; if empty, the one match that the objects carry",
         options={"SKIP_SAVE"},
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

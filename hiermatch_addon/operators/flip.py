@@ -13,7 +13,6 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..jobs.flipping import FlipJob
 from ..jobs.job_operator import JobOperator
-from ..jobs.running import can_start
 from ..properties.freshness import refresh
 from ..properties.panel_state import picked, state_of
 from ..properties.summary import is_of_picked, remember
@@ -33,7 +32,6 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         "Write another answer of the match, such as the one in which left and right are exchanged, without matching "
         "again. The first answer can be brought back"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     object: bpy.props.StringProperty(
         name="Object",
@@ -58,11 +56,6 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
 
     doing = "Writing another answer"
     cancelled = "It was cancelled. The match is as it was"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode."""
-        return can_start(cls, context)
 
     def _start(self, context: bpy.types.Context) -> FlipJob:
         """Read both objects."""

@@ -9,13 +9,13 @@ import bpy
 
 from ..common.translated_text import translated
 from ..jobs.prepared_shapes import forget_shapes
-from ..jobs.running import is_idle
+from ..jobs.running import Startable
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_forget_shapes(bpy.types.Operator):
+class HIERMATCH_OT_forget_shapes(Startable, bpy.types.Operator):
     """Forget the shapes that were prepared in this session."""
 
     bl_idname = "hiermatch.forget_shapes"
@@ -24,11 +24,7 @@ class HIERMATCH_OT_forget_shapes(bpy.types.Operator):
         "Free the memory of the meshes that were matched in this session; matching one again prepares it anew"
     )
     bl_options = {"INTERNAL"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it while nothing runs."""
-        return is_idle(cls, context)
+    modes = ()
 
     def execute(self, _context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Forget them."""

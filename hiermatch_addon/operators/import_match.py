@@ -11,7 +11,7 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from ..common.translated_text import translated
-from ..jobs.running import can_start
+from ..jobs.running import Startable
 from ..properties.freshness import refresh
 from ..properties.panel_state import picked, state_of
 from ..properties.summary import remember
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
+class HIERMATCH_OT_import_match(ImportHelper, Startable, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
     """Write the match that a file holds on two objects."""
 
     bl_idname = "hiermatch.import_match"
@@ -34,7 +34,6 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
         "Write a match that was exported to a file on two meshes with the same vertices and faces, in whatever pose, "
         "as if they had just been matched"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     if TYPE_CHECKING:
         filepath: str
@@ -63,11 +62,6 @@ class HIERMATCH_OT_import_match(ImportHelper, bpy.types.Operator):  # type: igno
         maxlen=LONGEST_PREFIX,
         options={"SKIP_SAVE"},
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

@@ -17,8 +17,7 @@ from ..properties.panel_state import picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import pick_named, remember
-from ..scene.pair import find_pair, left_out_note, name_of, selected_targets
-from .pair_operator import can_start_on_meshes
+from ..scene.pair import find_pair, lacking_meshes, left_out_note, name_of, selected_targets
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -33,7 +32,6 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
         "colors"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     source: bpy.props.StringProperty(
         name="Source",
@@ -55,9 +53,8 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     _left_out = ""  # which parts of the source's own character, as a sentence
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when no other match is running and there are two meshes."""
-        return can_start_on_meshes(cls, context)
+    def _lacking(cls, context: bpy.types.Context) -> str:
+        return lacking_meshes(view_layer_of(context))
 
     def draw(self, _context: bpy.types.Context) -> None:
         """Show the options in the Adjust Last Operation panel."""

@@ -12,10 +12,10 @@ import bpy
 from ..common.access import view_layer_of, window_manager_of
 from ..common.errors import ObjectError
 from ..common.translated_text import translated
-from ..jobs.running import can_start
+from ..jobs.running import Startable
 from ..properties.panel_state import picked, state_of
 from ..scene.character import side_of
-from ..scene.pair import active_side, lacking_meshes, left_out_note, named_side, selected_targets
+from ..scene.pair import active_side, left_out_note, named_side, selected_targets
 from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
@@ -24,10 +24,6 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
     from ..scene.character import Side
-
-    _Operator = bpy.types.Operator
-else:
-    _Operator = object
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
@@ -39,27 +35,23 @@ _BESIDE_BLEND: Any = (
 """Option of a path that may begin with `//`; Blender 4.3 has no such option, and allows that of all paths."""
 
 
-class PairOperator(_Operator):
+class PairOperator(Startable):
     """An operator that does something at once with two sides; to be inherited from before `bpy.types.Operator`."""
 
-    __annotations__ = {
-        "source": _props.StringProperty(
-            name="Source",
-            description="Name of the object that is the source; if empty, the one picked in the panel or else the "
-            "active object",
-            options={"SKIP_SAVE"},
-        ),
-        "target": _props.StringProperty(
-            name="Target",
-            description="Name of the object that is the target; if empty, the one picked in the panel or else the "
-            "other selected one",
-            options={"SKIP_SAVE"},
-        ),
-    }
+    source: _props.StringProperty(
+        name="Source",
+        description="Name of the object that is the source; if empty, the one picked in the panel or else the "
+        "active object",
+        options={"SKIP_SAVE"},
+    )
+    target: _props.StringProperty(
+        name="Target",
+        description="Name of the object that is the target; if empty, the one picked in the panel or else the "
+        "other selected one",
+        options={"SKIP_SAVE"},
+    )
 
     if TYPE_CHECKING:
-        source: str
-        target: str
         # With the context and what `_sides` has found: does it, and returns what to report.
         _do: Callable[..., str]
 
@@ -76,7 +68,7 @@ class PairOperator(_Operator):
         return {"FINISHED"}
 
 
-class FileOperator(_Operator):
+class FileOperator(Startable):
     """An operator that asks for a JSON file first; to be inherited from before what does the rest.
 
     Attributes
@@ -85,20 +77,15 @@ class FileOperator(_Operator):
         What is proposed.
     """
 
-    __annotations__ = {
-        "filepath": _props.StringProperty(
-            name="File",
-            description="Path of the file, a JSON text",
-            subtype="FILE_PATH",
-            options=_BESIDE_BLEND,
-        ),
-        "filter_glob": _props.StringProperty(
-            name="Filter", description="Which files are listed", default="*.json", options={"HIDDEN"}
-        ),
-    }
-
-    if TYPE_CHECKING:
-        filepath: str
+    filepath: _props.StringProperty(
+        name="File",
+        description="Path of the file, a JSON text",
+        subtype="FILE_PATH",
+        options=_BESIDE_BLEND,
+    )
+    filter_glob: _props.StringProperty(
+        name="Filter", description="Which files are listed", default="*.json", options={"HIDDEN"}
+    )
 
     file_name: str
 
@@ -121,16 +108,6 @@ class FileOperator(_Operator):
             raise ObjectError("No file is named. Choose one.")
         path = Path(bpy.path.abspath(self.filepath))
         return path if path.suffix or not written else path.with_suffix(".json")
-
-
-def can_start_on_meshes(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Tell, and say on the disabled button, whether an operator may start that takes two meshes: see `can_start`."""
-    if not can_start(cls, context):
-        return False
-    lacking = lacking_meshes(view_layer_of(context))
-    if lacking:
-        cls.poll_message_set(lacking)
-    return not lacking
 
 
 def pick_sides(

@@ -11,7 +11,6 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..jobs.job_operator import JobOperator
 from ..jobs.refining import RefineJob
-from ..jobs.running import can_start
 from ..properties.freshness import refresh
 from ..properties.panel_state import state_of
 from ..properties.steering_lists import check_steered, common_match
@@ -33,15 +32,9 @@ class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
         "Make the match better around landmarks and locked points, in a fraction of the time of a match. What is wrong "
         "altogether, such as a leg on another leg, has to be matched again"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     doing = "Refining"
     cancelled = "It was cancelled. The match is as it was"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
 
     def _start(self, context: bpy.types.Context) -> RefineJob:
         """Read both objects."""

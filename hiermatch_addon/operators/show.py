@@ -13,7 +13,7 @@ from ..common.access import mesh_of, window_manager_of
 from ..common.errors import ObjectError
 from ..common.redraw import redraw_views
 from ..common.translated_text import translated
-from ..jobs.running import can_start
+from ..jobs.running import Startable
 from ..properties.steering_lists import check_steered, common_match
 from ..properties.steering_properties import steering_of
 from ..properties.viewport_shading import shade_as_before, shade_by_colors
@@ -51,13 +51,13 @@ def _match_of(context: bpy.types.Context) -> tuple[Half, Half]:
     return halves
 
 
-class HIERMATCH_OT_show(bpy.types.Operator):
+class HIERMATCH_OT_show(Startable, bpy.types.Operator):
     """Show a match in colours."""
 
     bl_idname = "hiermatch.show"
     bl_label = "Show"
     bl_description = "Show the match in colors in this viewport, or show the meshes as before"
-    bl_options = {"REGISTER", "UNDO"}
+    modes = ("OBJECT", "POSE")
 
     view: bpy.props.EnumProperty(name="Show", description="What to show", items=VIEW_ITEMS, default="MATCH")
 
@@ -65,11 +65,6 @@ class HIERMATCH_OT_show(bpy.types.Operator):
     def description(cls, _context: bpy.types.Context, properties: Any) -> str:  # noqa: ANN401 - the operator's own
         """Describe the button by what it shows."""
         return {identifier: text for identifier, _, text in VIEW_ITEMS}[properties.view]
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode and Pose Mode, when nothing else is running."""
-        return can_start(cls, context, posing=True)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
@@ -83,7 +78,7 @@ class HIERMATCH_OT_show(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class HIERMATCH_OT_write_regions(bpy.types.Operator):
+class HIERMATCH_OT_write_regions(Startable, bpy.types.Operator):
     """Write regions as vertex groups."""
 
     bl_idname = "hiermatch.write_regions"
@@ -92,12 +87,6 @@ class HIERMATCH_OT_write_regions(bpy.types.Operator):
         "Write a vertex group for each matched point with all vertices that are nearer to it than to any other; groups "
         "of the same name are the same region"
     )
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

@@ -94,6 +94,51 @@ class SideReference:
         parts = tuple(found[uid] for _, uid in self.parts)
         return parts[0] if len(parts) == 1 else Character(self.name, parts)
 
+    def found(self) -> Side:
+        """Look the side up again.
+
+        Raises
+        ------
+        ObjectError
+            If a part of it was deleted.
+        """
+        side = self.find()
+        if side is None:
+            raise ObjectError(f'"{self.name}" was deleted meanwhile. Nothing was written.')
+        return side
+
+
+@dataclass(frozen=True)
+class ReadSide(SideReference):
+    """A side that was read, and is to be as it was when something is written.
+
+    Attributes
+    ----------
+    state : tuple of str
+        What tells other vertices and faces.
+    """
+
+    state: tuple[str, str]
+
+    @classmethod
+    def of(cls, side: Side) -> ReadSide:
+        """Take what a side is known by."""
+        reference = SideReference.of(side)
+        return cls(reference.name, reference.parts, (topology_of(side), positions_of(side)))
+
+    def unchanged(self) -> Side:
+        """Look the side up again.
+
+        Raises
+        ------
+        ObjectError
+            If it was deleted or edited since.
+        """
+        side = self.found()
+        if (topology_of(side), positions_of(side)) != self.state:
+            raise ObjectError(f'"{side.name}" was edited meanwhile. Nothing was written.')
+        return side
+
 
 def parts_of(side: Side) -> tuple[bpy.types.Object, ...]:
     """Return the mesh objects of a side."""

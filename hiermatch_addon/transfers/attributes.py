@@ -75,8 +75,6 @@ class AttributeTransfer(Transfer):
     """
 
     label = "Attributes"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: AttributeSettings) -> None:
         self._settings = settings

@@ -87,8 +87,6 @@ class MyRigTransfer(Transfer):
     """
 
     label = "Rig"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: MyRigSettings) -> None:
         self._settings = settings

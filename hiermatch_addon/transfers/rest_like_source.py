@@ -42,8 +42,6 @@ class RestLikeSource(Transfer):
     """
 
     label = "Rest Pose"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: RigSettings, rig: RigTransfer) -> None:
         self._settings, self._rig = settings, rig

@@ -53,8 +53,6 @@ class RigTransfer(Transfer):
     """
 
     label = "Rig"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: RigSettings) -> None:
         self._settings = settings

@@ -61,8 +61,6 @@ class ShapeKeyTransfer(Transfer):
     """
 
     label = "Shape Keys"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: ShapeKeySettings) -> None:
         self._settings = settings

@@ -19,9 +19,9 @@ from ..jobs.stepped_job import SteppedJob
 from ..jobs.transfer import TransferReport
 from ..jobs.verdict import asymmetry_note
 from ..scene.attribute_io import attribute_layouts, read_attribute, write_attribute
-from ..scene.character import SideReference
+from ..scene.character import ReadSide
 from ..scene.deform_layer import check_weights_writable, read_weights, write_weights
-from ..scene.mesh_io import corner_vertices, position_digest, read_mesh, topology, vertex_positions
+from ..scene.mesh_io import corner_vertices, read_mesh, vertex_positions
 from ..scene.pair import check_object
 from ..scene.shape_key_io import (
     KeySettings,
@@ -78,7 +78,7 @@ class SymmetriseJob(SteppedJob):
         self._start = time.perf_counter()
         check_object(view_layer_of(context), obj)
         check_weights_writable(obj)
-        self._link, self._state = SideReference.of(obj), _state(obj)
+        self._object = ReadSide.of(obj)
         self._parts: list[_Weights | _Keys | _Colors] = []
         if settings.weights:
             self._parts.append(_Weights(obj, create=settings.create))
@@ -106,21 +106,19 @@ class SymmetriseJob(SteppedJob):
         ObjectError
             If the object has changed since it was read.
         """
-        obj = self._object()
+        obj = cast("bpy.types.Object", self._object.unchanged())
         check_object(None, obj)
-        if _state(obj) != self._state:
-            raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
         done = [part.write(obj) for part in self._parts if part.names]
         self.seconds = time.perf_counter() - self._start
         return TransferReport(", ".join(done), tuple(filter(None, self._notes)))
 
     def _check(self) -> None:
-        self._object()
+        self._object.found()
 
     def _all_steps(self) -> Steps[None]:
         """Find the mirror images, and compute what is to be written."""
         self.found = yield from within(symmetry_map_steps(self._mesh), 0.0, 0.9)
-        self._notes.append(asymmetry_note(self._link.name, self.found.quality))
+        self._notes.append(asymmetry_note(self._object.name, self.found.quality))
         yield Progress(0.9, "Telling the sides apart")
         telling = called_steps(Symmetriser.of, self._mesh, self.found.source_to_target, self._hints)
         symmetriser = yield from within(telling, 0.9, 0.95)
@@ -128,13 +126,6 @@ class SymmetriseJob(SteppedJob):
         for part in self._parts:
             if part.names:
                 part.compute(symmetriser)
-
-    def _object(self) -> bpy.types.Object:
-        """Look the object up again."""
-        obj = self._link.find()
-        if obj is None:
-            raise ObjectError(f'"{self._link.name}" was deleted meanwhile. Nothing was written.')
-        return cast("bpy.types.Object", obj)
 
 
 class _Weights:
@@ -238,10 +229,6 @@ class _Colors:
             write_attribute(mesh, attribute_layouts(mesh)[name], values)
         mesh.update()
         return counted(len(self.names), "color attribute")
-
-
-def _state(obj: bpy.types.Object) -> tuple[str, str]:
-    return topology(mesh_of(obj)), position_digest(mesh_of(obj))
 
 
 def _flipped_group(settings: KeySettings) -> str:

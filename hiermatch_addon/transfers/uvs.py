@@ -45,8 +45,6 @@ class UVTransfer(Transfer):
     """
 
     label = "UV Maps"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: UVSettings) -> None:
         self._settings = settings

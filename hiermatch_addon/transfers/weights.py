@@ -66,8 +66,6 @@ class WeightTransfer(Transfer):
     """
 
     label = "Weights"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: WeightSettings) -> None:
         self._settings = settings

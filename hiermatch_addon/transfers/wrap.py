@@ -64,8 +64,6 @@ class WrapTransfer(Transfer):
     """
 
     label = "Wrap"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, settings: WrapSettings) -> None:
         self._settings = settings

@@ -2213,9 +2213,6 @@ MESSAGES: Final[dict[str, str]] = {
     'The faces of "{0}" changed while it was being matched. Nothing was written.': (
         "マッチング中に「{0}」の面が変わりました。何も書き込んでいません。"
     ),
-    '"{0}" was deleted while it was being matched. Nothing was written.': (
-        "マッチング中に「{0}」が削除されました。何も書き込んでいません。"
-    ),
     "The match was ended, because the objects changed: {0}": (
         "オブジェクトが変わったため、マッチングを終了しました：{0}"
     ),
@@ -2329,9 +2326,6 @@ MESSAGES: Final[dict[str, str]] = {
         "「{0}」と「{1}」には共通のランドマークがありません。先に追加してください。"
     ),
     '"{0}" and "{1}" have no landmark {2} in common.': "「{0}」と「{1}」には共通のランドマーク{2}がありません。",
-    '"{0}" was deleted or edited meanwhile. No landmark was added.': (
-        "その間に「{0}」が削除または編集されました。ランドマークは追加していません。"
-    ),
     'Source and Target are both "{0}", or share the same mesh data. Choose two meshes of their own.': (
         "ソースとターゲットがどちらも「{0}」か、同じメッシュデータを共有しています。別々のメッシュを選んでください。"
     ),

@@ -1821,7 +1821,6 @@ MESSAGES: Final[dict[str, str]] = {
     'The faces of "{0}" changed while it was being matched. Nothing was written.': (
         "匹配期间“{0}”的面发生了变化。没有写入任何内容。"
     ),
-    '"{0}" was deleted while it was being matched. Nothing was written.': "匹配期间“{0}”被删除。没有写入任何内容。",
     "The match was ended, because the objects changed: {0}": "因为物体发生了变化，匹配已结束：{0}",
     '"{0}" got another number of vertices while it was being matched. Nothing was written.': (
         "匹配期间“{0}”的顶点数发生了变化。没有写入任何内容。"
@@ -1908,7 +1907,6 @@ MESSAGES: Final[dict[str, str]] = {
     ),
     '"{0}" and "{1}" have no landmarks in common. Add some first.': "“{0}”和“{1}”没有共同的地标。请先添加。",
     '"{0}" and "{1}" have no landmark {2} in common.': "“{0}”和“{1}”没有共同的地标 {2}。",
-    '"{0}" was deleted or edited meanwhile. No landmark was added.': "在此期间“{0}”被删除或编辑。没有添加地标。",
     'Source and Target are both "{0}", or share the same mesh data. Choose two meshes of their own.': (
         "源和目标都是“{0}”，或共用同一网格数据。请选择两个独立的网格。"
     ),

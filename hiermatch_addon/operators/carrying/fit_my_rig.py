@@ -25,7 +25,6 @@ class HIERMATCH_OT_fit_my_rig(MyRigOptions, TransferOperator, bpy.types.Operator
         "Give the matched meshes a copy each of an armature that stands in the source, such as a metarig of Rigify or "
         "a standard skeleton, with its joints where they belong in them. It need not move the source"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     doing = "Fitting the rig"
 

@@ -12,7 +12,6 @@ from ...common.access import view_layer_of
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
 from ...jobs.job_operator import JobOperator
-from ...jobs.running import can_start
 from ...scene.pair import named_object
 from ...transfers.options.symmetrise import SymmetriseOptions, symmetrise_settings
 from ...transfers.symmetrise import SymmetriseJob
@@ -30,7 +29,6 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
         "Take weights, shape keys and colors of one side of a mesh to its other side, also if its pose or its topology "
         "is not symmetric"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     object: bpy.props.StringProperty(
         name="Object",
@@ -41,11 +39,6 @@ class HIERMATCH_OT_symmetrise(SymmetriseOptions, JobOperator, bpy.types.Operator
     doing = "Symmetrising"
     panel = "HIERMATCH_PT_symmetry"
     cancelled = "It was cancelled. Nothing was written"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
 
     def _start(self, context: bpy.types.Context) -> SymmetriseJob:
         """Read the object."""

@@ -20,10 +20,10 @@ from ...panels.question import draw_question
 from ...properties.freshness import refresh
 from ...properties.panel_state import progress_of, state_of
 from ...properties.summary import pick_named, remember
-from ...scene.pair import name_of
+from ...scene.pair import lacking_meshes, name_of
 from ...storage.writing import LONGEST_PREFIX
 from ...transfers.retarget_properties import remember_transfer
-from ..pair_operator import can_start_on_meshes, pick_sides
+from ..pair_operator import pick_sides
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -43,53 +43,42 @@ _MENU_WIDTH = 64
 class TransferOperator(JobOperator):
     """To be inherited from before `bpy.types.Operator`; what is carried says `_transfers`."""
 
-    __annotations__ = {
-        "source": _props.StringProperty(
-            name="Source",
-            description="Name of the object to carry from; if empty, the one picked in the panel or else the active "
-            "object",
-            options={"SKIP_SAVE"},
-        ),
-        "target": _props.StringProperty(
-            name="Target",
-            description="Name of the object to carry to; if empty, the one picked in the panel or else all other "
-            "selected meshes",
-            options={"SKIP_SAVE"},
-        ),
-        "targets": _props.CollectionProperty(
-            name="Targets",
-            description="Names of several objects to carry to",
-            type=bpy.types.OperatorFileListElement,
-            options={"HIDDEN", "SKIP_SAVE"},
-        ),
-        "prefix": _props.StringProperty(
-            name="Prefix",
-            description="What the names start with that the match to use wrote; if empty, the one match that the "
-            "objects carry",
-            maxlen=LONGEST_PREFIX,
-            options={"SKIP_SAVE"},
-        ),
-        "refine": _props.BoolProperty(
-            name="Refine with Rig",
-            description="If the source has a rig, fit it into the target and make the map of the match better with it, "
-            "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
-            default=True,
-        ),
-        "accept_doubtful": _props.BoolProperty(
-            name="Accept Doubtful",
-            description="Write the result also if the match is not to be trusted, with a confidence below 30 percent. "
-            "In a window you are asked",
-            options={"SKIP_SAVE"},
-        ),
-    }
-
-    if TYPE_CHECKING:
-        source: str
-        target: str
-        targets: Any
-        prefix: str
-        refine: bool
-        accept_doubtful: bool
+    source: _props.StringProperty(
+        name="Source",
+        description="Name of the object to carry from; if empty, the one picked in the panel or else the active object",
+        options={"SKIP_SAVE"},
+    )
+    target: _props.StringProperty(
+        name="Target",
+        description="Name of the object to carry to; if empty, the one picked in the panel or else all other "
+        "selected meshes",
+        options={"SKIP_SAVE"},
+    )
+    targets: _props.CollectionProperty(
+        name="Targets",
+        description="Names of several objects to carry to",
+        type=bpy.types.OperatorFileListElement,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    prefix: _props.StringProperty(
+        name="Prefix",
+        description="What the names start with that the match to use wrote; if empty, the one match that the "
+        "objects carry",
+        maxlen=LONGEST_PREFIX,
+        options={"SKIP_SAVE"},
+    )
+    refine: _props.BoolProperty(
+        name="Refine with Rig",
+        description="If the source has a rig, fit it into the target and make the map of the match better with it, "
+        "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
+        default=True,
+    )
+    accept_doubtful: _props.BoolProperty(
+        name="Accept Doubtful",
+        description="Write the result also if the match is not to be trusted, with a confidence below 30 percent. "
+        "In a window you are asked",
+        options={"SKIP_SAVE"},
+    )
 
     doing = "Carrying over"
     cancelled = "It was cancelled. Nothing was written"
@@ -106,9 +95,8 @@ class TransferOperator(JobOperator):
         raise NotImplementedError
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running and there are two meshes."""
-        return can_start_on_meshes(cast("type[bpy.types.Operator]", cls), context)
+    def _lacking(cls, context: bpy.types.Context) -> str:
+        return lacking_meshes(view_layer_of(context))
 
     def _start(self, context: bpy.types.Context) -> TransferJob | MotionJob:
         """Read all objects."""

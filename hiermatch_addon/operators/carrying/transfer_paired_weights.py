@@ -26,7 +26,6 @@ class HIERMATCH_OT_transfer_paired_weights(TransferOperator, bpy.types.Operator)
         "Carry the source's weights to the bones that the target has already, through the pairs of bones: they are "
         "shared out where it has more bones, and added up where it has fewer"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     limit: bpy.props.IntProperty(
         name="Limit Bones", description="How many bones may move a vertex at most; 0 for any number", min=0, default=4
@@ -35,14 +34,9 @@ class HIERMATCH_OT_transfer_paired_weights(TransferOperator, bpy.types.Operator)
     panel = "HIERMATCH_PT_motion"
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it as all that carries something, once bones are paired."""
-        if not super().poll(context):
-            return False
-        if not len(bone_pairs_of(cast("bpy.types.Scene", context.scene))):
-            cls.poll_message_set(translated("Pair the bones first"))
-            return False
-        return True
+    def _lacking(cls, context: bpy.types.Context) -> str:
+        is_paired = len(bone_pairs_of(cast("bpy.types.Scene", context.scene)))
+        return super()._lacking(context) or ("" if is_paired else translated("Pair the bones first"))
 
     def _transfers(self) -> list[Transfer]:
         return [PairedWeightTransfer(self.limit)]

@@ -31,7 +31,6 @@ class HIERMATCH_OT_wear(WearOptions, TransferOperator, bpy.types.Operator):
         "Without named items it takes the selected ones, or else, if the source is one mesh, all others that its "
         "armature moves"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     items: bpy.props.CollectionProperty(
         name="Items",

@@ -11,7 +11,7 @@ import bpy
 from ...common.access import view_layer_of
 from ...common.errors import ObjectError
 from ...common.translated_text import translated
-from ...jobs.running import can_start
+from ...jobs.running import Startable
 from ...properties.panel_state import picked, state_of
 from ...scene.character import parts_of, side_of
 from ...scene.pair import check_writable, named_side
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from ...scene.character import Side
 
 
-class HIERMATCH_OT_before_after(bpy.types.Operator):
+class HIERMATCH_OT_before_after(Startable, bpy.types.Operator):
     """Show a target without its new rig, shape keys and clothes, and again with them."""
 
     bl_idname = "hiermatch.before_after"
@@ -35,7 +35,7 @@ class HIERMATCH_OT_before_after(bpy.types.Operator):
         "Show the target as it stood before it got rig, shape keys and clothes; pressed again, as it is now, with the "
         "pose that it was in"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    modes = ("OBJECT", "POSE", "PAINT_WEIGHT")
 
     target: bpy.props.StringProperty(
         name="Target",
@@ -43,11 +43,6 @@ class HIERMATCH_OT_before_after(bpy.types.Operator):
         "active object",
         options={"SKIP_SAVE"},
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, while posing and while painting weights, when nothing else is running."""
-        return can_start(cls, context, posing=True, painting=True)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

@@ -11,7 +11,7 @@ import bpy
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.translated_text import translated
-from ...jobs.running import can_start
+from ...jobs.running import Startable
 from ...scene.posing.exercise import begin_exercise, bending_bones, end_exercise, is_exercising
 from ..reported_errors import reporting_errors
 from .rig_operator import meant_armature
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_test_poses(bpy.types.Operator):
+class HIERMATCH_OT_test_poses(Startable, bpy.types.Operator):
     """Bend every joint of a rig in turn, to see how the mesh follows."""
 
     bl_idname = "hiermatch.test_poses"
@@ -29,7 +29,7 @@ class HIERMATCH_OT_test_poses(bpy.types.Operator):
         "Bend every joint of the target's rig in turn, with a marker for each on the timeline; pressed again, all of "
         "it is taken away"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    modes = ("OBJECT", "POSE", "PAINT_WEIGHT")
 
     target: bpy.props.StringProperty(
         name="Target",
@@ -40,11 +40,6 @@ class HIERMATCH_OT_test_poses(bpy.types.Operator):
     remove: bpy.props.BoolProperty(
         name="Remove", description="Take test poses away, and make none if there are none", options={"SKIP_SAVE"}
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, while posing and while painting weights, when nothing else is running."""
-        return can_start(cls, context, posing=True, painting=True)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

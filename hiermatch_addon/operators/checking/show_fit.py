@@ -11,7 +11,7 @@ import bpy
 from ...common.access import mesh_of, view_layer_of, window_manager_of
 from ...common.errors import ObjectError
 from ...common.redraw import redraw_views
-from ...jobs.running import can_start
+from ...jobs.running import Startable
 from ...scene.pair import check_writable
 from ...transfers.wearing.fit_colors import FIT_ITEMS, FIT_NAMES, carriers_of_fit
 from ..reported_errors import reporting_errors
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_show_fit(bpy.types.Operator):
+class HIERMATCH_OT_show_fit(Startable, bpy.types.Operator):
     """Show in colors how fitted clothes lie on a body."""
 
     bl_idname = "hiermatch.show_fit"
     bl_label = "Show Fit"
     bl_description = "Show in this viewport what Wear has written with Show Fit on"
-    bl_options = {"REGISTER", "UNDO"}
+    modes = ("OBJECT", "POSE")
 
     view: bpy.props.EnumProperty(name="Show", description="What to show", items=FIT_ITEMS, default="DISTANCE")
 
@@ -35,11 +35,6 @@ class HIERMATCH_OT_show_fit(bpy.types.Operator):
     def description(cls, _context: bpy.types.Context, properties: Any) -> str:  # noqa: ANN401 - the operator's own
         """Describe the button by what it shows."""
         return {identifier: text for identifier, _, text in FIT_ITEMS}[properties.view]
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode and Pose Mode, when nothing else is running."""
-        return can_start(cls, context, posing=True)
 
     @reporting_errors
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:

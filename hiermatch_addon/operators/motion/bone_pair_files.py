@@ -44,7 +44,6 @@ class HIERMATCH_OT_import_bone_pairs(_PairFile, bpy.types.Operator):
     bl_idname = "hiermatch.import_bone_pairs"
     bl_label = "Import Bone Pairs"
     bl_description = "Load pairs of bones from a file in place of those of two armatures"
-    bl_options = {"REGISTER", "UNDO"}
 
     def _do(self, context: bpy.types.Context, source: bpy.types.Object, target: bpy.types.Object) -> str:
         count, missing = load_pairs(cast("bpy.types.Scene", context.scene), source, target, self._path())

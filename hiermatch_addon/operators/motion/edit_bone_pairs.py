@@ -9,7 +9,6 @@ from typing import cast
 import bpy
 
 from ...common.errors import ObjectError
-from ...jobs.running import is_idle
 from ...properties.bone_pairs import add_row, bone_pairs_of, clear_rows, remove_rows, rows_of
 from ...scene.motion.rigs import rig_of
 from ...transfers.retarget_properties import retarget_of
@@ -19,10 +18,7 @@ from ..pair_operator import PairOperator, pick_sides
 class PairEditor(PairOperator):
     """What operators on the table of two armatures have in common."""
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it when nothing else is running."""
-        return is_idle(cast("type[bpy.types.Operator]", cls), context)
+    modes = ()
 
     def _sides(self, context: bpy.types.Context) -> tuple[bpy.types.Object, bpy.types.Object]:
         source, targets, _ = pick_sides(context, self.source, [self.target] if self.target else [])
@@ -35,7 +31,6 @@ class HIERMATCH_OT_add_bone_pair(PairEditor, bpy.types.Operator):
     bl_idname = "hiermatch.add_bone_pair"
     bl_label = "Add Bone Pair"
     bl_description = "Pair two bones by hand, and lock the pair; without a source bone, the target's bone stays alone"
-    bl_options = {"REGISTER", "UNDO"}
 
     source_bone: bpy.props.StringProperty(
         name="Source Bone", description="Bone of the source; empty for none", options={"SKIP_SAVE"}
@@ -65,7 +60,6 @@ class HIERMATCH_OT_remove_bone_pair(PairEditor, bpy.types.Operator):
     bl_idname = "hiermatch.remove_bone_pair"
     bl_label = "Remove Bone Pair"
     bl_description = "Take a pair of bones out of the table"
-    bl_options = {"REGISTER", "UNDO"}
 
     target_bone: bpy.props.StringProperty(
         name="Target Bone", description="Bone of the target whose pairs are removed", options={"SKIP_SAVE"}
@@ -93,7 +87,6 @@ class HIERMATCH_OT_clear_bone_pairs(PairEditor, bpy.types.Operator):
     bl_idname = "hiermatch.clear_bone_pairs"
     bl_label = "Clear Bone Pairs"
     bl_description = "Take the pairs of two armatures out of the table"
-    bl_options = {"REGISTER", "UNDO"}
 
     locked: bpy.props.BoolProperty(name="Locked Too", description="Take locked pairs out as well")
 

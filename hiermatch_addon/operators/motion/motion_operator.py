@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
-from ...jobs.running import can_start
 from ..carrying.transfer_operator import TransferOperator
 
 if TYPE_CHECKING:
@@ -17,8 +16,8 @@ class MotionOperator(TransferOperator):
 
     doing = "Carrying motion over"
     panel = "HIERMATCH_PT_motion"
+    modes = ("OBJECT", "POSE")
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode and Pose Mode, when nothing else is running."""
-        return can_start(cast("type[bpy.types.Operator]", cls), context, posing=True)
+    def _lacking(cls, _context: bpy.types.Context) -> str:
+        return ""  # bones that are paired by hand need no meshes

@@ -24,7 +24,6 @@ class HIERMATCH_OT_pair_bones(MotionOperator, bpy.types.Operator):
         "Find out which bones of two rigs belong together by the surface that they move, whatever they are called. "
         "The bodies are matched first if that has not been done"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     doing = "Pairing bones"
 

@@ -12,7 +12,7 @@ from ...common.access import options_layout, window_manager_of
 from ...common.errors import ObjectError
 from ...common.phrases import counted
 from ...common.translated_text import translated
-from ...jobs.running import can_start
+from ...jobs.running import Startable
 from ...scene.motion.rigs import check_armature, rig_of
 from ...transfers.motion.bone_names import names_by_source, names_by_table, rename_bones
 from ..checking.rig_operator import meant_target
@@ -30,7 +30,7 @@ _STANDARDS = [
 ]
 
 
-class HIERMATCH_OT_rename_bones(bpy.types.Operator):
+class HIERMATCH_OT_rename_bones(Startable, bpy.types.Operator):
     """Rename bones."""
 
     bl_idname = "hiermatch.rename_bones"
@@ -39,7 +39,7 @@ class HIERMATCH_OT_rename_bones(bpy.types.Operator):
         "Give the bones of the target's rig the names of a standard, or of the source's bones. Vertex groups, actions, "
         "constraints and drivers follow"
     )
-    bl_options = {"REGISTER", "UNDO"}
+    modes = ("OBJECT", "POSE")
 
     target: bpy.props.StringProperty(
         name="Target",
@@ -75,11 +75,6 @@ class HIERMATCH_OT_rename_bones(bpy.types.Operator):
         ],
         default="JOINTS",
     )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode and Pose Mode, when nothing else is running."""
-        return can_start(cls, context, posing=True)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[OperatorReturnItems]:
         """Ask for the names, and by what the bones are known: after a refusal there would be nothing to adjust."""

@@ -28,7 +28,6 @@ class HIERMATCH_OT_retarget_action(MotionOptions, MotionOperator, bpy.types.Oper
         "Carry actions of the source's armature to others, whatever their bones are called, how many there are, and "
         "how they rest. Bones are paired first if that has not been done"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     def _make_job(
         self, context: bpy.types.Context, source: Side, targets: list[Side], options: TransferOptions
@@ -43,7 +42,6 @@ class HIERMATCH_OT_retarget_pose(MotionOperator, bpy.types.Operator):
     bl_idname = "hiermatch.retarget_pose"
     bl_label = "Retarget Pose"
     bl_description = "Pose other armatures as the source's stands now. Bones are paired first if that has not been done"
-    bl_options = {"REGISTER", "UNDO"}
 
     keep_hands: bpy.props.BoolProperty(
         name="Hands on Body",

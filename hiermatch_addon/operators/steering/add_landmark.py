@@ -29,7 +29,6 @@ class HIERMATCH_OT_add_landmark(LandmarkOperator, bpy.types.Operator):
         "Name two corresponding places, to which matches will keep: in Edit Mode the vertices selected on the two "
         "meshes, one on each; in Object Mode the vertices nearest to two selected empties, or those that you click on"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     source_vertex: bpy.props.IntProperty(
         name="Source Vertex",

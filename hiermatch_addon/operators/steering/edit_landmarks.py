@@ -44,7 +44,6 @@ class HIERMATCH_OT_remove_landmark(_OneLandmark, bpy.types.Operator):
     bl_idname = "hiermatch.remove_landmark"
     bl_label = "Remove Landmark"
     bl_description = "Remove a landmark from both meshes"
-    bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)
@@ -58,7 +57,6 @@ class HIERMATCH_OT_clear_landmarks(LandmarkOperator, bpy.types.Operator):
     bl_idname = "hiermatch.clear_landmarks"
     bl_label = "Clear Landmarks"
     bl_description = "Remove all landmarks that source and target have in common"
-    bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, _context: bpy.types.Context, source: Side, target: Side) -> str:
         return f"Removed {counted(clear_landmarks(source, target), 'landmark')}"
@@ -70,7 +68,6 @@ class HIERMATCH_OT_switch_landmark(_OneLandmark, bpy.types.Operator):
     bl_idname = "hiermatch.switch_landmark"
     bl_label = "Switch Landmark"
     bl_description = "Switch a landmark on or off; matches keep to those that are on"
-    bl_options = {"REGISTER", "UNDO"}
 
     use: bpy.props.BoolProperty(name="Use", description="Whether matches are to keep to it", default=True)
 
@@ -86,7 +83,6 @@ class HIERMATCH_OT_select_landmark(_OneLandmark, bpy.types.Operator):
     bl_idname = "hiermatch.select_landmark"
     bl_label = "Select Landmark"
     bl_description = "Select the two vertices of a landmark, and nothing else of the two meshes"
-    bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         number = self._chosen(context)

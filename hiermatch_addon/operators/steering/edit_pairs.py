@@ -29,18 +29,12 @@ _props: Any = bpy.props  # whose functions Blender's stubs declare to return not
 class _PairOperator(LandmarkOperator):
     """An operator on one of the matched points."""
 
-    __annotations__ = {
-        **LandmarkOperator.__annotations__,
-        "number": _props.IntProperty(
-            name="Number",
-            description="Which matched point; if zero, the one that is active in the list",
-            min=0,
-            options={"SKIP_SAVE"},
-        ),
-    }
-
-    if TYPE_CHECKING:
-        number: int
+    number: _props.IntProperty(
+        name="Number",
+        description="Which matched point; if zero, the one that is active in the list",
+        min=0,
+        options={"SKIP_SAVE"},
+    )
 
     def _row(self, context: bpy.types.Context, source: Side, target: Side) -> dict[str, Any]:
         """Find what the row of the list holds that is meant; the list may show another pair than the named one.
@@ -71,7 +65,6 @@ class HIERMATCH_OT_select_pair(_PairOperator, bpy.types.Operator):
     bl_idname = "hiermatch.select_pair"
     bl_label = "Select Matched Point"
     bl_description = "Select the vertices nearest to a matched point, and nothing else of the two meshes"
-    bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         row = self._row(context, source, target)
@@ -89,7 +82,6 @@ class HIERMATCH_OT_lock_pair(_PairOperator, bpy.types.Operator):
         "Make a landmark of a matched point that is right, so that it stays where it is when the match is refined or "
         "made anew; once more lets it go"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         row = self._row(context, source, target)
@@ -108,7 +100,6 @@ class HIERMATCH_OT_remove_pair(_PairOperator, bpy.types.Operator):
     bl_idname = "hiermatch.remove_pair"
     bl_label = "Remove Matched Point"
     bl_description = "Remove the vertex groups of a matched point from both meshes; the dense map stays as it is"
-    bl_options = {"REGISTER", "UNDO"}
 
     def _edit(self, context: bpy.types.Context, source: Side, target: Side) -> str:
         check_pair(view_layer_of(context), source, target)

@@ -14,7 +14,7 @@ from ...common.access import window_manager_of
 from ...common.errors import ObjectError
 from ...common.redraw import redraw_views
 from ...common.translated_text import translated
-from ...jobs.running import can_start, is_running, modal_operators
+from ...jobs.running import Startable, is_running, modal_operators
 from ...overlay.drawing import show_pending
 from ...properties.steering_lists import sync_lists
 from ...properties.steering_properties import steering_of
@@ -31,10 +31,6 @@ if TYPE_CHECKING:
     from ...storage.landmarks import Landmark
     from .landmark_picking import Hit
     from .viewports import Viewport
-
-    _Operator = bpy.types.Operator
-else:
-    _Operator = object
 
 _MOVES: Final = ("MOUSEMOVE", "INBETWEEN_MOUSEMOVE")
 """Events of which there are many, and that change nothing."""
@@ -55,7 +51,7 @@ class _Click:
     count: int
 
 
-class LandmarkClicks(_Operator):
+class LandmarkClicks(Startable):
     """To be inherited from before `bpy.types.Operator`; each pair of clicks is a step of its own to undo."""
 
     _sides: tuple[SideReference, SideReference]
@@ -63,11 +59,6 @@ class LandmarkClicks(_Operator):
     replaced = False  # whether another one waits for clicks now
     had_overlay = False  # whether the overlay was shown before
     _timer: bpy.types.Timer | None = None  # without it an Undo would be noticed with the next event only
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cast("type[bpy.types.Operator]", cls), context)
 
     def execute(self, _context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Say what scripts are to use."""

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import bpy
 
@@ -13,7 +13,6 @@ from ...common.file_reading import read_text
 from ...common.file_writing import write_whole
 from ...common.phrases import counted
 from ...common.translated_text import translated
-from ...jobs.running import can_start
 from ...storage.landmark_files import landmarks_from_text, landmarks_to_text
 from ...storage.landmarks import add_landmarks, find_landmarks, remove_landmark, rename_landmark, switch_landmark
 from ..pair_operator import FileOperator
@@ -27,11 +26,7 @@ class _LandmarkFile(FileOperator, LandmarkOperator):
     """An operator on a file of landmarks."""
 
     file_name = "landmarks.json"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cast("type[bpy.types.Operator]", cls), context)
+    modes = ("OBJECT",)
 
 
 class HIERMATCH_OT_save_landmarks(_LandmarkFile, bpy.types.Operator):
@@ -60,7 +55,6 @@ class HIERMATCH_OT_load_landmarks(_LandmarkFile, bpy.types.Operator):
     bl_idname = "hiermatch.load_landmarks"
     bl_label = "Load Landmarks"
     bl_description = "Load landmarks of source and target from a file"
-    bl_options = {"REGISTER", "UNDO"}
 
     replace: bpy.props.BoolProperty(
         name="Replace",

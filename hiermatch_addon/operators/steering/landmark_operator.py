@@ -10,7 +10,6 @@ import bpy
 from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...common.translated_text import translated
-from ...jobs.running import is_idle
 from ...properties.panel_state import pick, picked, state_of
 from ...properties.steering_lists import sync_lists
 from ...scene.character import Character, parts_of
@@ -85,19 +84,10 @@ def told_of_others(pair: tuple[Side, Side], before: Sequence[dict[int, Mark]]) -
 class LandmarkOperator(PairOperator):
     """An operator on two meshes, in Object Mode or in Edit Mode; to be inherited from before `bpy.types.Operator`."""
 
+    modes: tuple[str, ...] = ("OBJECT", "EDIT_MESH")
+
     def _sides(self, context: bpy.types.Context) -> tuple[Side, Side]:
         return steerable_pair(context, (self.source, self.target))
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object and in Edit Mode, when nothing else is running."""
-        operator = cast("type[bpy.types.Operator]", cls)
-        if not is_idle(operator, context):
-            return False
-        if context.mode not in ("OBJECT", "EDIT_MESH"):
-            operator.poll_message_set(translated("Switch to Object Mode or to Edit Mode first"))
-            return False
-        return True
 
     def execute(self, context: bpy.types.Context) -> set[OperatorReturnItems]:
         """Do it, and report, also what has changed for other meshes by that."""

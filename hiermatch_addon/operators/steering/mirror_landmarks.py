@@ -11,7 +11,6 @@ from ...common.phrases import counted
 from ...common.translated_text import translated
 from ...jobs.job_operator import JobOperator
 from ...jobs.landmark_mirroring import MirrorJob
-from ...jobs.running import can_start
 from ...properties.steering_lists import sync_lists
 from .landmark_operator import pick_pair, steerable_pair
 
@@ -28,15 +27,9 @@ class HIERMATCH_OT_mirror_landmarks(JobOperator, bpy.types.Operator):
         "Add a landmark on the other side for each that is on one side, by the symmetry of each mesh; the meshes may "
         "be in any pose"
     )
-    bl_options = {"REGISTER", "UNDO"}
 
     doing = "Mirroring landmarks"
     cancelled = "It was cancelled. No landmark was added"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Allow it in Object Mode, when nothing else is running."""
-        return can_start(cls, context)
 
     def _start(self, context: bpy.types.Context) -> MirrorJob:
         """Read both objects."""

@@ -84,7 +84,6 @@ class BonePairTransfer(Transfer):
     """
 
     label = "Bone Pairs"
-    uses_rig = True
     mirrors = False
 
     def __init__(self) -> None:

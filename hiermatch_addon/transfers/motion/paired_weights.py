@@ -51,8 +51,6 @@ class PairedWeightTransfer(Transfer):
     """
 
     label = "Weights"
-    uses_rig = True
-    mirrors = True
 
     def __init__(self, limit: int) -> None:
         self._limit = limit

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....engine import Progress
-from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ...scene.armatures import armature_of, pose_of
 from ...scene.motion.control_pose_io import posed_controls, set_switches
@@ -165,7 +164,4 @@ def found_again(reference: SideReference) -> bpy.types.Object:
     ObjectError
         If it was deleted.
     """
-    found = reference.find()
-    if found is None:
-        raise ObjectError(f'"{reference.name}" was deleted meanwhile. Nothing was written.')
-    return rig_of(found)
+    return rig_of(reference.found())

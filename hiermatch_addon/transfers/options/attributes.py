@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """Options of carrying attributes: Blender's properties, and the plain settings that they make."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 
@@ -44,54 +43,48 @@ class AttributeSettings:
 class AttributeOptions:
     """The options of attributes, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "attribute_colors": _props.BoolProperty(
-            name="Color Attributes",
-            description="Carry color attributes over; those of the same name are replaced",
-            default=True,
-        ),
-        "attribute_values": _props.BoolProperty(
-            name="Other Attributes",
-            description="Carry over attributes of numbers, vectors and truth values that were added to the source",
-            default=True,
-        ),
-        "attribute_names": _props.StringProperty(
-            name="Names",
-            description="Names of the attributes to carry over, separated by commas; if empty, all",
-        ),
-        "attribute_materials": _props.BoolProperty(
-            name="Materials",
-            description="Give each face the material of the source there; materials are added to the slots of the "
-            "target unless they are there already",
-            default=True,
-        ),
-        "attribute_sharp": _props.BoolProperty(
-            name="Sharp Edges",
-            description="Mark the edges as sharp that follow sharp edges of the source, and shade faces flat where the "
-            "source is, instead of what is marked on the target",
-            default=True,
-        ),
-        "attribute_seams": _props.BoolProperty(
-            name="Seams",
-            description="Mark the edges as seams that follow seams of the source, instead of those of the target. "
-            "UV maps that are carried over bring their own",
-            default=False,
-        ),
-        "attribute_creases": _props.BoolProperty(
-            name="Creases and Bevels",
-            description="Carry creases and bevel weights over to the edges and vertices that follow those of the "
-            "source",
-            default=True,
-        ),
-        "attribute_normals": _props.BoolProperty(
-            name="Custom Normals",
-            description="Carry over how the custom normals of the source deviate from its surface, if it has any",
-            default=True,
-        ),
-    }
-
-    if TYPE_CHECKING:
-        attribute_names: str
+    attribute_colors: _props.BoolProperty(
+        name="Color Attributes",
+        description="Carry color attributes over; those of the same name are replaced",
+        default=True,
+    )
+    attribute_values: _props.BoolProperty(
+        name="Other Attributes",
+        description="Carry over attributes of numbers, vectors and truth values that were added to the source",
+        default=True,
+    )
+    attribute_names: _props.StringProperty(
+        name="Names",
+        description="Names of the attributes to carry over, separated by commas; if empty, all",
+    )
+    attribute_materials: _props.BoolProperty(
+        name="Materials",
+        description="Give each face the material of the source there; materials are added to the slots of the "
+        "target unless they are there already",
+        default=True,
+    )
+    attribute_sharp: _props.BoolProperty(
+        name="Sharp Edges",
+        description="Mark the edges as sharp that follow sharp edges of the source, and shade faces flat where the "
+        "source is, instead of what is marked on the target",
+        default=True,
+    )
+    attribute_seams: _props.BoolProperty(
+        name="Seams",
+        description="Mark the edges as seams that follow seams of the source, instead of those of the target. "
+        "UV maps that are carried over bring their own",
+        default=False,
+    )
+    attribute_creases: _props.BoolProperty(
+        name="Creases and Bevels",
+        description="Carry creases and bevel weights over to the edges and vertices that follow those of the source",
+        default=True,
+    )
+    attribute_normals: _props.BoolProperty(
+        name="Custom Normals",
+        description="Carry over how the custom normals of the source deviate from its surface, if it has any",
+        default=True,
+    )
 
 
 def attribute_settings(options: AttributeOptions) -> AttributeSettings:

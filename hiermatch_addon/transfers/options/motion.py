@@ -2,11 +2,9 @@
 # mypy: disable-error-code="valid-type"
 """Options of carrying motion over: Blender's properties, and the plan that they make."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 
@@ -54,81 +52,67 @@ class MotionPlan:
 class MotionOptions:
     """How motion is carried over, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "action": _props.StringProperty(
-            name="Action",
-            description="Name of the action to carry over, or a pattern such as Walk*; several with a semicolon "
-            "between them. If empty, those that Actions says",
-            options={"SKIP_SAVE"},
-        ),
-        "actions": _props.EnumProperty(
-            name="Actions",
-            description="Which actions of the source are carried over",
-            items=[
-                ("ACTIVE", "Active", "The one that the source plays, or the only one that it has"),
-                ("ALL", "All", "All actions of the file that move bones of the source"),
-            ],
-            default="ACTIVE",
-        ),
-        "keying": _props.EnumProperty(
-            name="Keys",
-            description="At which frames the new action gets keys",
-            items=[
-                ("AUTO", "Automatic", "At the source's keys if these are few, else reduced ones"),
-                ("SOURCE", "As the Source", "At the keys of the source's bones, with their interpolation"),
-                ("REDUCED", "Reduced", "As few as keep the motion within the Tolerance"),
-                ("ALL", "Every Frame", "At every frame"),
-            ],
-            default="AUTO",
-        ),
-        "tolerance": _props.FloatProperty(
-            name="Tolerance",
-            description="By how much reduced keys may change a rotation",
-            subtype="ANGLE",
-            min=0,
-            max=0.5,
-            default=0.0035,
-        ),
-        "keep_feet": _props.BoolProperty(
-            name="Feet on Ground",
-            description="Where a foot stands in the source, let it stand in the target: the leg is bent for it. All "
-            "frames are computed then",
-        ),
-        "keep_hands": _props.BoolProperty(
-            name="Hands on Body",
-            description="Where a hand touches the body or the other hand in the source, bend the target's arm so that "
-            "it does so too. All frames are computed then",
-        ),
-        "stride": _props.FloatProperty(
-            name="Stride",
-            description="How long the way along the ground is; 1 fits the length of the target's legs",
-            min=0,
-            soft_max=3,
-            default=1,
-        ),
-        "in_place": _props.BoolProperty(
-            name="In Place", description="Take out the way from the first to the last frame, for walk cycles"
-        ),
-        "strips": _props.BoolProperty(
-            name="NLA Strips",
-            description="Carry the actions of the source's NLA strips over as well, and copy the strips",
-        ),
-        "assign": _props.BoolProperty(
-            name="Play", description="Let the target play the new action, if it is one only", default=True
-        ),
-    }
-
-    if TYPE_CHECKING:
-        action: str
-        actions: str
-        keying: str
-        tolerance: float
-        keep_feet: bool
-        keep_hands: bool
-        stride: float
-        in_place: bool
-        strips: bool
-        assign: bool
+    action: _props.StringProperty(
+        name="Action",
+        description="Name of the action to carry over, or a pattern such as Walk*; several with a semicolon "
+        "between them. If empty, those that Actions says",
+        options={"SKIP_SAVE"},
+    )
+    actions: _props.EnumProperty(
+        name="Actions",
+        description="Which actions of the source are carried over",
+        items=[
+            ("ACTIVE", "Active", "The one that the source plays, or the only one that it has"),
+            ("ALL", "All", "All actions of the file that move bones of the source"),
+        ],
+        default="ACTIVE",
+    )
+    keying: _props.EnumProperty(
+        name="Keys",
+        description="At which frames the new action gets keys",
+        items=[
+            ("AUTO", "Automatic", "At the source's keys if these are few, else reduced ones"),
+            ("SOURCE", "As the Source", "At the keys of the source's bones, with their interpolation"),
+            ("REDUCED", "Reduced", "As few as keep the motion within the Tolerance"),
+            ("ALL", "Every Frame", "At every frame"),
+        ],
+        default="AUTO",
+    )
+    tolerance: _props.FloatProperty(
+        name="Tolerance",
+        description="By how much reduced keys may change a rotation",
+        subtype="ANGLE",
+        min=0,
+        max=0.5,
+        default=0.0035,
+    )
+    keep_feet: _props.BoolProperty(
+        name="Feet on Ground",
+        description="Where a foot stands in the source, let it stand in the target: the leg is bent for it. All "
+        "frames are computed then",
+    )
+    keep_hands: _props.BoolProperty(
+        name="Hands on Body",
+        description="Where a hand touches the body or the other hand in the source, bend the target's arm so that "
+        "it does so too. All frames are computed then",
+    )
+    stride: _props.FloatProperty(
+        name="Stride",
+        description="How long the way along the ground is; 1 fits the length of the target's legs",
+        min=0,
+        soft_max=3,
+        default=1,
+    )
+    in_place: _props.BoolProperty(
+        name="In Place", description="Take out the way from the first to the last frame, for walk cycles"
+    )
+    strips: _props.BoolProperty(
+        name="NLA Strips",
+        description="Carry the actions of the source's NLA strips over as well, and copy the strips",
+    )
+    assign: _props.BoolProperty(
+        name="Play", description="Let the target play the new action, if it is one only", default=True
+    )
 
 
 def motion_plan(scene: bpy.types.Scene, options: MotionOptions, rig: bpy.types.Object) -> MotionPlan:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """Options of fitting an armature that stands in the source: Blender's properties, and the plain settings of them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 
@@ -41,30 +40,24 @@ def _armatures(_owner: object, context: bpy.types.Context, _text: str) -> list[s
 class MyRigOptions:
     """The options of fitting such an armature, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "rig": _props.StringProperty(
-            name="Rig",
-            description="Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
-            "It may be bound to nothing",
-            search=_armatures,
-            search_options={"SORT"},
-        ),
-        "my_rig_bind": _props.BoolProperty(
-            name="Bind with Weights",
-            description="Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
-            "bones that move the same surface. Leave it off for a metarig",
-        ),
-        "my_rig_limit": _props.IntProperty(
-            name="Limit Bones",
-            description="How many bones may move a vertex at most; 0 for any number",
-            min=0,
-            default=4,
-        ),
-    }
-
-    if TYPE_CHECKING:
-        rig: str
-        my_rig_bind: bool
+    rig: _props.StringProperty(
+        name="Rig",
+        description="Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
+        "It may be bound to nothing",
+        search=_armatures,
+        search_options={"SORT"},
+    )
+    my_rig_bind: _props.BoolProperty(
+        name="Bind with Weights",
+        description="Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
+        "bones that move the same surface. Leave it off for a metarig",
+    )
+    my_rig_limit: _props.IntProperty(
+        name="Limit Bones",
+        description="How many bones may move a vertex at most; 0 for any number",
+        min=0,
+        default=4,
+    )
 
 
 def my_rig_settings(options: MyRigOptions) -> MyRigSettings:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """The options of the one button: which kinds are carried over, and those of each kind."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import bpy
 
 from ...common.errors import ObjectError
+from ...jobs.transfer import Transfer
 from ..attributes import AttributeTransfer
 from ..rest_like_source import RestLikeSource
 from ..rig import RigTransfer
@@ -19,9 +19,6 @@ from .rig import RigOptions, rig_settings
 from .shape_keys import ShapeKeyOptions, shape_key_settings
 from .uvs import UVOptions, uv_settings
 from .weights import WeightOptions, weight_settings
-
-if TYPE_CHECKING:
-    from ...jobs.transfer import Transfer
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
@@ -38,38 +35,29 @@ KINDS: Final = {
 class RetargetOptions(RigOptions, WeightOptions, ShapeKeyOptions, UVOptions, AttributeOptions):
     """Which kinds are carried over, and how."""
 
-    __annotations__ = {
-        "use_rig": _props.BoolProperty(
-            name="Rig",
-            description="Give the target a copy of the source's armature, fitted into its body, and bind it. Left out "
-            "if the source has none",
-            default=True,
-        ),
-        "use_weights": _props.BoolProperty(
-            name="Weights",
-            description="Carry the source's vertex groups. Left out if it has none",
-            default=True,
-        ),
-        "use_shape_keys": _props.BoolProperty(
-            name="Shape Keys",
-            description="Carry the source's shape keys. Left out if it has none",
-            default=True,
-        ),
-        "use_uvs": _props.BoolProperty(
-            name="UV Maps", description="Carry the source's UV maps. Left out if it has none", default=True
-        ),
-        "use_attributes": _props.BoolProperty(
-            name="Attributes",
-            description="Carry color attributes, custom attributes, materials and marked edges",
-        ),
-    }
-
-    if TYPE_CHECKING:
-        use_rig: bool
-        use_weights: bool
-        use_shape_keys: bool
-        use_uvs: bool
-        use_attributes: bool
+    use_rig: _props.BoolProperty(
+        name="Rig",
+        description="Give the target a copy of the source's armature, fitted into its body, and bind it. Left out "
+        "if the source has none",
+        default=True,
+    )
+    use_weights: _props.BoolProperty(
+        name="Weights",
+        description="Carry the source's vertex groups. Left out if it has none",
+        default=True,
+    )
+    use_shape_keys: _props.BoolProperty(
+        name="Shape Keys",
+        description="Carry the source's shape keys. Left out if it has none",
+        default=True,
+    )
+    use_uvs: _props.BoolProperty(
+        name="UV Maps", description="Carry the source's UV maps. Left out if it has none", default=True
+    )
+    use_attributes: _props.BoolProperty(
+        name="Attributes",
+        description="Carry color attributes, custom attributes, materials and marked edges",
+    )
 
 
 def option_names(kind: type[Any]) -> tuple[str, ...]:

@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """Options of carrying shape keys: Blender's properties, and the plain settings that they make."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 
+from ....engine import Scaling
 from .plain_settings import names_in, settings_of
-
-if TYPE_CHECKING:
-    from ....engine import Scaling
 
 _props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
@@ -53,72 +50,66 @@ _SCALINGS: dict[str, Scaling] = {"AUTO": "auto", "NONE": "none", "OVERALL": "ove
 class ShapeKeyOptions:
     """The options of shape keys, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "key_choice": _props.EnumProperty(
-            name="Shape Keys",
-            description="Which shape keys of the source are carried over",
-            items=[
-                ("ALL", "All", "All shape keys"),
-                ("ACTIVE", "Active", "The active shape key"),
-                ("NAMED", "By Name", "The shape keys that are named"),
-            ],
-            default="ALL",
-        ),
-        "key_names": _props.StringProperty(
-            name="Names",
-            description="Names of the shape keys to carry over, separated by commas",
-        ),
-        "key_existing": _props.EnumProperty(
-            name="Existing Keys",
-            description="What becomes of shape keys of the same name that the target has already",
-            items=[
-                ("REPLACE", "Replace", "Give them the new shape and settings"),
-                ("SKIP", "Skip", "Leave them as they are"),
-            ],
-            default="REPLACE",
-        ),
-        "key_scaling": _props.EnumProperty(
-            name="Scale",
-            description="What becomes of the size of the movements",
-            items=[
-                (
-                    "AUTO",
-                    "Automatic",
-                    "With Size if the target is clearly larger or smaller than the source, else only to its units",
-                ),
-                ("NONE", "None", "As long as on the source"),
-                ("OVERALL", "With Size", "Longer or shorter as the whole target is larger or smaller"),
-                ("LOCAL", "Locally", "Longer or shorter as the target is larger or smaller around each place"),
-            ],
-            default="AUTO",
-        ),
-        "key_threshold": _props.FloatProperty(
-            name="Threshold",
-            description="Movements shorter than this part of the longest of a shape key are dropped, so that vertices "
-            "far from what it moves stay exactly in place",
-            default=0.001,
-            min=0.0,
-            max=1.0,
-            precision=4,
-            subtype="FACTOR",
-        ),
-        "key_drivers": _props.BoolProperty(
-            name="Drivers",
-            description="Copy the drivers of the shape keys. Where they point to the source or its armature, the "
-            "copies point to the target and its armature",
-            default=True,
-        ),
-        "key_action": _props.BoolProperty(
-            name="Action",
-            description="Let the target's shape keys play the action of the source's, unless they have one of their "
-            "own. Both share it",
-            default=True,
-        ),
-    }
-
-    if TYPE_CHECKING:
-        key_names: str
-        key_scaling: str
+    key_choice: _props.EnumProperty(
+        name="Shape Keys",
+        description="Which shape keys of the source are carried over",
+        items=[
+            ("ALL", "All", "All shape keys"),
+            ("ACTIVE", "Active", "The active shape key"),
+            ("NAMED", "By Name", "The shape keys that are named"),
+        ],
+        default="ALL",
+    )
+    key_names: _props.StringProperty(
+        name="Names",
+        description="Names of the shape keys to carry over, separated by commas",
+    )
+    key_existing: _props.EnumProperty(
+        name="Existing Keys",
+        description="What becomes of shape keys of the same name that the target has already",
+        items=[
+            ("REPLACE", "Replace", "Give them the new shape and settings"),
+            ("SKIP", "Skip", "Leave them as they are"),
+        ],
+        default="REPLACE",
+    )
+    key_scaling: _props.EnumProperty(
+        name="Scale",
+        description="What becomes of the size of the movements",
+        items=[
+            (
+                "AUTO",
+                "Automatic",
+                "With Size if the target is clearly larger or smaller than the source, else only to its units",
+            ),
+            ("NONE", "None", "As long as on the source"),
+            ("OVERALL", "With Size", "Longer or shorter as the whole target is larger or smaller"),
+            ("LOCAL", "Locally", "Longer or shorter as the target is larger or smaller around each place"),
+        ],
+        default="AUTO",
+    )
+    key_threshold: _props.FloatProperty(
+        name="Threshold",
+        description="Movements shorter than this part of the longest of a shape key are dropped, so that vertices "
+        "far from what it moves stay exactly in place",
+        default=0.001,
+        min=0.0,
+        max=1.0,
+        precision=4,
+        subtype="FACTOR",
+    )
+    key_drivers: _props.BoolProperty(
+        name="Drivers",
+        description="Copy the drivers of the shape keys. Where they point to the source or its armature, the "
+        "copies point to the target and its armature",
+        default=True,
+    )
+    key_action: _props.BoolProperty(
+        name="Action",
+        description="Let the target's shape keys play the action of the source's, unless they have one of their "
+        "own. Both share it",
+        default=True,
+    )
 
 
 def shape_key_settings(options: ShapeKeyOptions) -> ShapeKeySettings:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """Options of making a mesh symmetric: Blender's properties, and the plain settings that they make."""
-
-from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
@@ -37,34 +36,28 @@ class SymmetriseSettings:
 class SymmetriseOptions:
     """The options of symmetrising, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "symmetrise_side": _props.EnumProperty(
-            name="Direction",
-            description="Which side is taken to the other. The sides are told apart by vertex groups with names such "
-            "as Arm.L and Arm.R, or else by the object's X axis, which points to the left",
-            items=[
-                ("LEFT", "Left to Right", "The left side is good"),
-                ("RIGHT", "Right to Left", "The right side is good"),
-            ],
-            default="LEFT",
-        ),
-        "symmetrise_weights": _props.BoolProperty(
-            name="Weights",
-            description="Make the weights of vertex groups symmetric; locked groups are left alone",
-            default=True,
-        ),
-        "symmetrise_keys": _props.BoolProperty(
-            name="Shape Keys", description="Make shape keys symmetric", default=True
-        ),
-        "symmetrise_colors": _props.BoolProperty(
-            name="Colors", description="Make color attributes symmetric", default=True
-        ),
-        "symmetrise_create": _props.BoolProperty(
-            name="Create Missing Sides",
-            description="Add vertex groups and shape keys of the other side where only one side is there",
-            default=True,
-        ),
-    }
+    symmetrise_side: _props.EnumProperty(
+        name="Direction",
+        description="Which side is taken to the other. The sides are told apart by vertex groups with names such "
+        "as Arm.L and Arm.R, or else by the object's X axis, which points to the left",
+        items=[
+            ("LEFT", "Left to Right", "The left side is good"),
+            ("RIGHT", "Right to Left", "The right side is good"),
+        ],
+        default="LEFT",
+    )
+    symmetrise_weights: _props.BoolProperty(
+        name="Weights",
+        description="Make the weights of vertex groups symmetric; locked groups are left alone",
+        default=True,
+    )
+    symmetrise_keys: _props.BoolProperty(name="Shape Keys", description="Make shape keys symmetric", default=True)
+    symmetrise_colors: _props.BoolProperty(name="Colors", description="Make color attributes symmetric", default=True)
+    symmetrise_create: _props.BoolProperty(
+        name="Create Missing Sides",
+        description="Add vertex groups and shape keys of the other side where only one side is there",
+        default=True,
+    )
 
 
 def symmetrise_settings(options: SymmetriseOptions) -> SymmetriseSettings:

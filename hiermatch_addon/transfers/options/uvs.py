@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """Options of carrying UV layers: Blender's properties, and the plain settings that they make."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 
@@ -35,32 +34,26 @@ class UVSettings:
 class UVOptions:
     """The options of UV layers, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "uv_layers": _props.EnumProperty(
-            name="UV Maps",
-            description="Which UV maps of the source are carried over. Those of the same name are replaced",
-            items=[
-                ("ALL", "All", "All UV maps"),
-                ("ACTIVE", "Active", "The active UV map"),
-                ("NAMED", "By Name", "The UV maps that are named"),
-            ],
-            default="ALL",
-        ),
-        "uv_names": _props.StringProperty(
-            name="Names",
-            description="Names of the UV maps to carry over, separated by commas",
-        ),
-        "uv_seams": _props.BoolProperty(
-            name="Mark Seams",
-            description="Mark the edges between the islands of the active UV map as seams on the target, instead of "
-            "the seams that it has",
-            default=True,
-        ),
-    }
-
-    if TYPE_CHECKING:
-        uv_layers: str
-        uv_names: str
+    uv_layers: _props.EnumProperty(
+        name="UV Maps",
+        description="Which UV maps of the source are carried over. Those of the same name are replaced",
+        items=[
+            ("ALL", "All", "All UV maps"),
+            ("ACTIVE", "Active", "The active UV map"),
+            ("NAMED", "By Name", "The UV maps that are named"),
+        ],
+        default="ALL",
+    )
+    uv_names: _props.StringProperty(
+        name="Names",
+        description="Names of the UV maps to carry over, separated by commas",
+    )
+    uv_seams: _props.BoolProperty(
+        name="Mark Seams",
+        description="Mark the edges between the islands of the active UV map as seams on the target, instead of "
+        "the seams that it has",
+        default=True,
+    )
 
 
 def uv_settings(options: UVOptions) -> UVSettings:

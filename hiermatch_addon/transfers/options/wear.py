@@ -2,8 +2,6 @@
 # mypy: disable-error-code="valid-type"
 """Options of fitting clothes: Blender's properties, and the plain settings that they make."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -81,83 +79,81 @@ class WearSettings:
 class WearOptions:
     """The options of clothes, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "wear_result": _props.EnumProperty(
-            name="Result",
-            description="What is made",
-            items=[
-                ("OBJECT", "Fitted Copies", "A copy of each item, in a collection of its own"),
-                ("KEY", "Shape Key", "A shape key on each item that moves it to the other body"),
-            ],
-            default="OBJECT",
-        ),
-        "wear_clearance": _props.FloatProperty(
-            name="Clearance",
-            description="Least distance from the skin. With 0 it is what the items had on their own body, in the size "
-            "of the other",
-            default=0.0,
-            min=0.0,
-            soft_max=0.05,
-            precision=4,
-            subtype="DISTANCE",
-        ),
-        "wear_weights": _props.EnumProperty(
-            name="Weights",
-            description="Which weights the fitted items get",
-            items=[
-                ("AUTO", "Automatic", "Their own, if the other body's rig has these bones, or else those of its skin"),
-                ("OWN", "Own", "Their own, whatever bones the other body has"),
-                ("SKIN", "From the Skin", "Those of the other body's skin, from where the items lie on it"),
-            ],
-            default="AUTO",
-        ),
-        "wear_limit": _props.IntProperty(
-            name="Limit",
-            description="How many bones may move a vertex: the smallest weights go. 0 for any number",
-            default=0,
-            min=0,
-            max=32,
-        ),
-        "wear_normalise": _props.BoolProperty(
-            name="Normalize",
-            description="Let the weights of all bones sum to one at each vertex. Locked groups keep theirs",
-            default=True,
-        ),
-        "wear_poses": _props.BoolProperty(
-            name="Mend in Poses",
-            description="Bend each joint of the other body's rig, and where its skin pokes through an item then, bring "
-            "the weights there closer to those of the skin, and lift the item a little",
-            default=True,
-        ),
-        "wear_keys": _props.BoolProperty(
-            name="Follow Shape Keys",
-            description="Give the fitted items the other body's shape keys that move it below them, driven by its own: "
-            "they follow a wide belly or a squat",
-            default=True,
-        ),
-        "wear_fit_rig": _props.BoolProperty(
-            name="Fit Rig",
-            description="If the other body has no armature, give it that of the first, with its weights, as Retarget "
-            "does, so that body and clothes move",
-            default=True,
-        ),
-        "wear_hide": _props.EnumProperty(
-            name="Body Below",
-            description="What becomes of the body where clothes cover it",
-            items=[
-                ("NONE", "As It Is", "It is left as it is"),
-                ("KEY", "Shrink Key", "It gets a shape key that draws it in below clothes"),
-                ("MASK", "Mask", "It gets a Mask modifier with a vertex group that hides it below clothes"),
-            ],
-            default="NONE",
-        ),
-        "wear_colors": _props.BoolProperty(
-            name="Show Fit",
-            description="Write color attributes that show how far each vertex is from the skin, how far it was pushed, "
-            "and where it is uncertain",
-            default=False,
-        ),
-    }
+    wear_result: _props.EnumProperty(
+        name="Result",
+        description="What is made",
+        items=[
+            ("OBJECT", "Fitted Copies", "A copy of each item, in a collection of its own"),
+            ("KEY", "Shape Key", "A shape key on each item that moves it to the other body"),
+        ],
+        default="OBJECT",
+    )
+    wear_clearance: _props.FloatProperty(
+        name="Clearance",
+        description="Least distance from the skin. With 0 it is what the items had on their own body, in the size "
+        "of the other",
+        default=0.0,
+        min=0.0,
+        soft_max=0.05,
+        precision=4,
+        subtype="DISTANCE",
+    )
+    wear_weights: _props.EnumProperty(
+        name="Weights",
+        description="Which weights the fitted items get",
+        items=[
+            ("AUTO", "Automatic", "Their own, if the other body's rig has these bones, or else those of its skin"),
+            ("OWN", "Own", "Their own, whatever bones the other body has"),
+            ("SKIN", "From the Skin", "Those of the other body's skin, from where the items lie on it"),
+        ],
+        default="AUTO",
+    )
+    wear_limit: _props.IntProperty(
+        name="Limit",
+        description="How many bones may move a vertex: the smallest weights go. 0 for any number",
+        default=0,
+        min=0,
+        max=32,
+    )
+    wear_normalise: _props.BoolProperty(
+        name="Normalize",
+        description="Let the weights of all bones sum to one at each vertex. Locked groups keep theirs",
+        default=True,
+    )
+    wear_poses: _props.BoolProperty(
+        name="Mend in Poses",
+        description="Bend each joint of the other body's rig, and where its skin pokes through an item then, bring "
+        "the weights there closer to those of the skin, and lift the item a little",
+        default=True,
+    )
+    wear_keys: _props.BoolProperty(
+        name="Follow Shape Keys",
+        description="Give the fitted items the other body's shape keys that move it below them, driven by its own: "
+        "they follow a wide belly or a squat",
+        default=True,
+    )
+    wear_fit_rig: _props.BoolProperty(
+        name="Fit Rig",
+        description="If the other body has no armature, give it that of the first, with its weights, as Retarget "
+        "does, so that body and clothes move",
+        default=True,
+    )
+    wear_hide: _props.EnumProperty(
+        name="Body Below",
+        description="What becomes of the body where clothes cover it",
+        items=[
+            ("NONE", "As It Is", "It is left as it is"),
+            ("KEY", "Shrink Key", "It gets a shape key that draws it in below clothes"),
+            ("MASK", "Mask", "It gets a Mask modifier with a vertex group that hides it below clothes"),
+        ],
+        default="NONE",
+    )
+    wear_colors: _props.BoolProperty(
+        name="Show Fit",
+        description="Write color attributes that show how far each vertex is from the skin, how far it was pushed, "
+        "and where it is uncertain",
+        default=False,
+    )
 
 
 def wear_settings(options: WearOptions, items: tuple[str, ...]) -> WearSettings:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+# mypy: disable-error-code="valid-type"
 """Options of wrapping one mesh onto another: Blender's properties, and the plain settings that they make."""
-
-from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
@@ -38,43 +37,41 @@ class WrapSettings:
 class WrapOptions:
     """The options of wrapping, for whatever class of Blender's inherits from it."""
 
-    __annotations__ = {
-        "wrap_moved": _props.EnumProperty(
-            name="Wrap",
-            description="Whose surface is laid onto the other",
-            items=[
-                ("SOURCE", "Source to Target", "Lay the source onto the target"),
-                ("TARGET", "Target to Source", "Lay the target onto the source"),
-            ],
-            default="SOURCE",
-        ),
-        "wrap_result": _props.EnumProperty(
-            name="Result",
-            description="What is made",
-            items=[
-                ("KEY", "Shape Key", "Add a shape key to the mesh: its slider leads from one shape to the other"),
-                ("OBJECT", "New Object", "Make a new object that has both shapes, and leave the mesh as it is"),
-            ],
-            default="KEY",
-        ),
-        "wrap_place": _props.EnumProperty(
-            name="Place",
-            description="Where the wrapped shape stands",
-            items=[
-                ("OTHER", "At the Other", "Where the mesh stands that it is laid onto"),
-                ("OWN", "Own Place", "Where the mesh stood, turned and moved back as one"),
-            ],
-            default="OTHER",
-        ),
-        "wrap_in_betweens": _props.IntProperty(
-            name="In-Betweens",
-            description="How many shape keys are added that keep limbs from shrinking on the way. They follow the "
-            "slider of the first by drivers",
-            default=0,
-            min=0,
-            max=15,
-        ),
-    }
+    wrap_moved: _props.EnumProperty(
+        name="Wrap",
+        description="Whose surface is laid onto the other",
+        items=[
+            ("SOURCE", "Source to Target", "Lay the source onto the target"),
+            ("TARGET", "Target to Source", "Lay the target onto the source"),
+        ],
+        default="SOURCE",
+    )
+    wrap_result: _props.EnumProperty(
+        name="Result",
+        description="What is made",
+        items=[
+            ("KEY", "Shape Key", "Add a shape key to the mesh: its slider leads from one shape to the other"),
+            ("OBJECT", "New Object", "Make a new object that has both shapes, and leave the mesh as it is"),
+        ],
+        default="KEY",
+    )
+    wrap_place: _props.EnumProperty(
+        name="Place",
+        description="Where the wrapped shape stands",
+        items=[
+            ("OTHER", "At the Other", "Where the mesh stands that it is laid onto"),
+            ("OWN", "Own Place", "Where the mesh stood, turned and moved back as one"),
+        ],
+        default="OTHER",
+    )
+    wrap_in_betweens: _props.IntProperty(
+        name="In-Betweens",
+        description="How many shape keys are added that keep limbs from shrinking on the way. They follow the "
+        "slider of the first by drivers",
+        default=0,
+        min=0,
+        max=15,
+    )
 
 
 def wrap_settings(options: WrapOptions) -> WrapSettings:

@@ -6,16 +6,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, cast
 
-import bpy
 import numpy as np
 from scipy.sparse import csr_array, diags_array, hstack
 
 from ....engine import ClosestPoints, TriangleMesh, WornItem, row_sums
-from ...common.access import mesh_of
 from ...common.errors import ObjectError
 from ...scene.armatures import find_armature, held_by
+from ...scene.character import ReadSide
 from ...scene.deform_layer import read_weights
-from ...scene.mesh_io import position_digest, read_mesh, topology
+from ...scene.mesh_io import read_mesh
 from ...scene.worn.garments import dressed_at_rest
 from ...scene.worn.smoothing import moved_mesh, smoothing_offsets
 from .item_weights import ItemWeights, in_columns
@@ -23,6 +22,7 @@ from .item_weights import ItemWeights, in_columns
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    import bpy
     from numpy.typing import NDArray
 
     from ....engine import FittedItem
@@ -42,7 +42,7 @@ class ReadItem:
 
     Attributes
     ----------
-    name, uid, state : str, int and tuple of str
+    side : ReadSide
         Which object it is, and how it was.
     worn : WornItem
         What the engine has to know of it.
@@ -56,14 +56,17 @@ class ReadItem:
         How far Subdivision moves its vertices to where they are seen, and where `worn` has them.
     """
 
-    name: str
-    uid: int
-    state: tuple[str, str]
+    side: ReadSide
     worn: WornItem
     at_rest: bool
     weights: ItemWeights
     held: bool
     smoothing: NDArray[np.float64]
+
+    @property
+    def name(self) -> str:
+        """What it was called."""
+        return self.side.name
 
 
 def read_item(
@@ -96,8 +99,7 @@ def read_item(
         left=None if left is None else left > 0.5,
         margin=clearance,
     )
-    state = topology(mesh_of(item)), position_digest(mesh_of(item))
-    return ReadItem(item.name, item.session_uid, state, worn, dressed_at_rest(item, source), own, held, smoothing)
+    return ReadItem(ReadSide.of(item), worn, dressed_at_rest(item, source), own, held, smoothing)
 
 
 def as_cage(fitted: FittedItem, item: ReadItem) -> FittedItem:
@@ -122,22 +124,6 @@ def _own_weights(item: bpy.types.Object, weights: csr_array, source: Side, bones
     others = [number for number, name in enumerate(names) if name not in bones]
     whole = csr_array(np.ones((weights.shape[0], 1)))
     return ItemWeights((*(names[one] for one in others), bone), csr_array(hstack([weights[:, others], whole])), locked)
-
-
-def still_there(item: ReadItem) -> bpy.types.Object:
-    """Look an item up again.
-
-    Raises
-    ------
-    ObjectError
-        If it was deleted or edited since.
-    """
-    obj = next((one for one in bpy.data.objects if one.session_uid == item.uid), None)
-    if obj is None:
-        raise ObjectError(f'"{item.name}" was deleted meanwhile. Nothing was written.')
-    if (topology(mesh_of(obj)), position_digest(mesh_of(obj))) != item.state:
-        raise ObjectError(f'"{obj.name}" was edited meanwhile. Nothing was written.')
-    return obj
 
 
 def _painted(item: bpy.types.Object, weights: csr_array, name: str) -> NDArray[np.float64] | None:

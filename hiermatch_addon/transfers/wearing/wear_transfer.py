@@ -33,7 +33,7 @@ from .fit_report import done, doubt
 from .followed_keys import apart_from, lacking, read_body_keys, write_followed
 from .item_bones import ItemBones, read_item_bones
 from .item_motion import ItemMotion
-from .item_reading import as_cage, check_place, read_item, still_there
+from .item_reading import as_cage, check_place, read_item
 from .item_writing import check_key, write_copy, write_key
 
 if TYPE_CHECKING:
@@ -62,7 +62,6 @@ class WearTransfer(Transfer):
     """
 
     label = "Clothes"
-    uses_rig = True
     mirrors = False
 
     def __init__(self, settings: WearSettings) -> None:
@@ -196,12 +195,12 @@ class WearTransfer(Transfer):
     def check(self) -> None:
         """Make sure that all items are as they were."""
         for item in self._items:
-            still_there(item)
+            item.side.unchanged()
 
     def write(self, context: bpy.types.Context, source: Side, target: Side) -> TransferReport:
         """Write the fitted items, on the target as it is now."""
         show_after(target)
-        items = [still_there(item) for item in self._items]
+        items = [cast("bpy.types.Object", item.side.unchanged()) for item in self._items]
         reports = [transfer.write(context, source, target) for transfer in self._first]
         notes = [*self._notes, *(note for report in reports for note in report.notes)]
         remarks = [remark for report in reports for remark in report.remarks]

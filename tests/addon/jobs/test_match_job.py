@@ -283,7 +283,7 @@ def test_cancelling_changes_nothing(operator, way):
 def test_a_change_ends_the_run_with_a_message(operator, pair):
     delete(pair)
     assert operator.send("TIMER") == {"CANCELLED"}
-    assert operator.reports == [("ERROR", '"Target" was deleted while it was being matched. Nothing was written.')]
+    assert operator.reports == [("ERROR", '"Target" was deleted meanwhile. Nothing was written.')]
 
 
 def test_a_bug_ends_the_run_and_is_raised(operator):

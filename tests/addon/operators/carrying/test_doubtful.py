@@ -7,7 +7,7 @@ import bpy
 import pytest
 from hiermatch.hiermatch_addon.jobs import verdict
 from hiermatch.hiermatch_addon.operators.carrying.transfer_operator import TransferOperator
-from hiermatch.hiermatch_addon.operators.carrying.transfer_uvs import HIERMATCH_OT_transfer_uvs
+from hiermatch.hiermatch_addon.operators.carrying.transfers import HIERMATCH_OT_transfer_uvs
 from hiermatch.hiermatch_addon.panels import retarget_panels
 
 from tests.addon.panels.test_panels import Layout, tell, texts

@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 import pytest
-from hiermatch.hiermatch_addon.operators.carrying.transfer_weights import HIERMATCH_OT_transfer_weights
+from hiermatch.hiermatch_addon.operators.carrying.transfers import HIERMATCH_OT_transfer_weights
 from hiermatch.hiermatch_addon.scene.deform_layer import read_weights, write_weights
 from scipy.sparse import csr_array
 
