@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
-from ..properties.summary import remember
+from ..properties.freshness import show_match
 from ..storage.match_exchange import apply_match, collect_match
 from ..storage.match_file import SUFFIXES, load_match, save_match
 from .command import EXIT_CODES
@@ -82,8 +80,7 @@ def _import(parsed: argparse.Namespace, console: Console) -> ExitCode:
         source, target = load_pair(parsed, report)
         context = bpy.context
         stored = apply_match(context, source, target, match, parsed.prefix)
-        remember(state_of(context).summary, stored, stored.names, parsed.prefix, 0.0)
-        refresh(cast("bpy.types.Scene", context.scene))
+        show_match(context, stored, stored.names, parsed.prefix)
         report.add_match(stored)
         save_outputs(parsed, report, target, console, clean=False)
 

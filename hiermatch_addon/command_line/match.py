@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
 from ..jobs.match_job import MatchJob, job_options
-from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
-from ..properties.summary import remember
+from ..properties.freshness import show_match
 from ..scene.character import parts_of
 from ..scene.pair import is_own
 from ..storage import writing
@@ -158,9 +156,7 @@ def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:
         job = MatchJob(context, source, target, settings)
         drive(job, console)
         outcome = job.finish()
-        names = (outcome.source, outcome.target)
-        remember(state_of(context).summary, outcome.stored, names, options.prefix, outcome.seconds)
-        refresh(cast("bpy.types.Scene", context.scene))
+        show_match(context, outcome.stored, outcome.stored.names, options.prefix, outcome.seconds)
         save_results(parsed, report, (source, target), options.prefix, console)
 
     return run_reported(parsed, [parsed.source.path, parsed.target.path], console, work)

@@ -12,9 +12,7 @@ from ..common.access import view_layer_of
 from ..common.errors import DoubtfulMatchError
 from ..jobs.match_job import job_options
 from ..jobs.transfer_job import TransferJob, TransferOptions
-from ..properties.freshness import refresh
-from ..properties.panel_state import state_of
-from ..properties.summary import remember
+from ..properties.freshness import refresh, show_match
 from ..scene.pair import name_of
 from ..transfers.options.retarget import chosen_transfers
 from ..transfers.retarget_properties import remember_transfer
@@ -134,8 +132,7 @@ def run_transfers(
         carried = job.finish(context)
         outcome = carried[0].outcome
         if outcome is not None:
-            names = (outcome.source, outcome.target)
-            remember(state_of(context).summary, outcome.stored, names, matching.prefix, outcome.seconds)
+            show_match(context, outcome.stored, outcome.stored.names, matching.prefix, outcome.seconds)
         refresh(cast("bpy.types.Scene", context.scene))
         layer = view_layer_of(context)
         panel = getattr(bpy.types, f"HIERMATCH_OT_{operator}").panel

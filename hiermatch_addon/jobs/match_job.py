@@ -49,7 +49,6 @@ if TYPE_CHECKING:
     from ..properties.properties import MatchOptions
     from ..scene.character import Side
     from ..storage.contents import Content
-    from ..storage.vertex_maps import MapPair
 
 _BY_RIGS = "The shapes have little in common: limbs were taken for the same that both rigs have in the same places."
 
@@ -95,6 +94,12 @@ class JobOptions:
     def __post_init__(self) -> None:
         writing.check_prefix(self.prefix)
 
+    def written(self, *, dense: bool) -> Written:
+        """Say how a match is written that has dense maps, or none."""
+        excluded = self.exclude_source, self.exclude_target
+        kinds = self.vertex_groups, self.match_colors, self.distortion, self.confidence
+        return Written(self.use_modifiers, *kinds, dense=dense, excluded=excluded)
+
 
 def job_options(options: MatchOptions) -> JobOptions:
     """Read the options of a match, from an operator or from the panel's state.
@@ -125,22 +130,15 @@ class Outcome:
 
     Attributes
     ----------
-    source, target : str
-        Names of the objects.
     result : MatchResult
         What was written.
-    maps : MapPair or None
-        Its dense maps, if it has any, in the precision in which they are kept.
     stored : StoredMatch
         What is kept of it in the file: all answers.
     seconds : float
         How long it took, from reading to writing.
     """
 
-    source: str
-    target: str
     result: MatchResult
-    maps: MapPair | None
     stored: StoredMatch
     seconds: float
 
@@ -176,15 +174,6 @@ class _Found:
         if found.source_to_target is None or found.target_to_source is None:
             return None
         return StoredMaps.of(found.source_to_target, found.target_to_source)
-
-
-@dataclass(frozen=True, eq=False)
-class _Prepared:
-    """The answer that is written, its maps, and what is written of it on source and target."""
-
-    result: MatchResult
-    maps: MapPair | None
-    contents: tuple[Content, Content]
 
 
 class MatchJob(SteppedJob):
@@ -248,7 +237,7 @@ class MatchJob(SteppedJob):
         self._hung = (hung_on_bones(source), hung_on_bones(target))
         self._known = known_shapes(shape_memory(context))
         self._found: _Found | None = None
-        self._prepared: _Prepared | None = None
+        self._prepared: tuple[Content, Content] | None = None
         super().__init__()
 
     def _check(self) -> None:
@@ -334,18 +323,19 @@ class MatchJob(SteppedJob):
         better = followed_share(_maps(other), meshes, pairs) > share
         return replace(other, notes=(*other.notes, _BY_RIGS)) if better else result
 
-    def _prepare_steps(self, found: _Found) -> Steps[_Prepared]:
+    def _prepare_steps(self, found: _Found) -> Steps[tuple[Content, Content]]:
         """Prepare what is to be written of the answers."""
-        prefix, result = self._options.prefix, found.answer
+        options, prefix = self._options, self._options.prefix
         kept, maps = found.maps(found.chosen), None
         if kept is not None:
             yield Progress(0.0, "Preparing what is written")
             maps = kept.between(*self._meshes)
-        contents = yield from within(contents_steps(result, prefix, self._options, maps), 0.3, 1.0)
+        written = options.written(dense=kept is not None)
+        contents = yield from within(contents_steps(found.answer, prefix, written, maps), 0.3, 1.0)
         if kept is not None:
             others = (found.maps(number) for number in range(len(found.answers)) if number != found.chosen)
             add_maps(contents, prefix, (kept, *others))
-        return _Prepared(result, maps, contents)
+        return contents
 
     @property
     def maps(self) -> StoredMaps | None:
@@ -373,9 +363,9 @@ class MatchJob(SteppedJob):
             if topology_of(obj) != read:
                 raise ObjectError(f'The faces of "{obj.name}" changed while it was being matched. Nothing was written.')
         names, prefix = (objects[0].name, objects[1].name), self._options.prefix
-        stored, prepared = self._stored(self._found, names), self._prepared
-        write_answer((objects[0], objects[1]), stored, prepared.contents, prefix, show=True)
-        return Outcome(*names, prepared.result, prepared.maps, stored, time.perf_counter() - self._start)
+        stored = self._stored(self._found, names)
+        write_answer((objects[0], objects[1]), stored, self._prepared, prefix, show=True)
+        return Outcome(self._found.answer, stored, time.perf_counter() - self._start)
 
     def stored(self) -> StoredMatch:
         """Collect what is to be kept of the match, without writing it; it must have come to its end.
@@ -401,15 +391,7 @@ class MatchJob(SteppedJob):
             names=names,
             topologies=self._topologies,
             positions=self._positions,
-            written=Written(
-                options.use_modifiers,
-                options.vertex_groups,
-                options.match_colors,
-                options.distortion,
-                options.confidence,
-                dense=result.source_to_target is not None,
-                excluded=(options.exclude_source, options.exclude_target),
-            ),
+            written=options.written(dense=result.source_to_target is not None),
             source_points=CornerPoints.of(result.source_points),
             answers=tuple(Answer.of(answer, answer.quality) for answer in found.answers),
             chosen=found.chosen,

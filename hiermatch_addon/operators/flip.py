@@ -13,9 +13,9 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..jobs.flipping import FlipJob
 from ..jobs.job_operator import JobOperator
-from ..properties.freshness import refresh
+from ..properties.freshness import show_match
 from ..properties.panel_state import picked, state_of
-from ..properties.summary import is_of_picked, remember
+from ..properties.summary import is_of_picked
 from ..scene.pair import named_side
 from ..storage.halves import Half, find_half, find_keyed
 
@@ -66,8 +66,7 @@ class HIERMATCH_OT_flip(JobOperator, bpy.types.Operator):
         stored = job.finish()
         summary = state_of(context).summary
         same = (summary.prefix, summary.key) == (job.prefix, job.key)
-        remember(summary, stored, job.names, job.prefix, summary.seconds if same else 0.0)
-        refresh(cast("bpy.types.Scene", context.scene))
+        show_match(context, stored, job.names, job.prefix, summary.seconds if same else 0.0)
         source, target = job.names
         self.report({"INFO"}, translated(f'Wrote the {stored.answer.name} match of "{source}" and "{target}"'))
         return {"FINISHED"}

@@ -5,16 +5,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from ..common.translated_text import translated
 from ..jobs.running import Startable
-from ..properties.freshness import refresh
+from ..properties.freshness import show_match
 from ..properties.panel_state import picked, state_of
-from ..properties.summary import remember
 from ..scene.pair import find_pair
 from ..storage.match_exchange import apply_match
 from ..storage.match_file import load_match
@@ -70,8 +69,7 @@ class HIERMATCH_OT_import_match(ImportHelper, Startable, bpy.types.Operator):  #
         path = Path(bpy.path.abspath(self.filepath))
         source, target = find_pair(context, (self.source, self.target), picked(state))
         stored = apply_match(context, source, target, load_match(path), self.prefix)
-        remember(state.summary, stored, stored.names, self.prefix, 0.0)
-        refresh(cast("bpy.types.Scene", context.scene))
+        show_match(context, stored, stored.names, self.prefix)
         self.report(
             {"INFO"}, translated(f'Imported the match of "{source.name}" and "{target.name}" from "{path.name}"')
         )

@@ -12,11 +12,11 @@ from ..common.access import layout_of, view_layer_of
 from ..common.translated_text import translated
 from ..jobs.job_operator import JobOperator
 from ..jobs.match_job import MatchJob, job_options
-from ..properties.freshness import refresh
+from ..properties.freshness import show_match
 from ..properties.panel_state import picked, state_of
 from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
-from ..properties.summary import pick_named, remember
+from ..properties.summary import pick_named
 from ..scene.pair import find_pair, lacking_meshes, left_out_note, name_of, selected_targets
 
 if TYPE_CHECKING:
@@ -82,16 +82,13 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
         outcome = job.finish()
         if self._named:
             pick_named(cast("bpy.types.Scene", context.scene), self.source, self.target)
-        remember(
-            state_of(context).summary, outcome.stored, (outcome.source, outcome.target), self.prefix, outcome.seconds
-        )
-        refresh(cast("bpy.types.Scene", context.scene))
+        show_match(context, outcome.stored, outcome.stored.names, self.prefix, outcome.seconds)
         if self._left_out:
             self.report({"INFO"}, translated(self._left_out))
         for note in outcome.stored.notes:
             self.report({"WARNING"}, translated(note))
         points, seconds = len(outcome.result.source_points), outcome.seconds
-        both = f'"{outcome.source}" and "{outcome.target}"'
+        both = '"{}" and "{}"'.format(*outcome.stored.names)
         verdict = state_of(context).summary.verdict
         if verdict:
             said = translated(f"Matched {points} points of {both} in {seconds:.1f} s. {verdict}")

@@ -11,10 +11,9 @@ from ..common.errors import ObjectError
 from ..common.translated_text import translated
 from ..jobs.job_operator import JobOperator
 from ..jobs.refining import RefineJob
-from ..properties.freshness import refresh
+from ..properties.freshness import show_match
 from ..properties.panel_state import state_of
 from ..properties.steering_lists import check_steered, common_match
-from ..properties.summary import remember
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -51,8 +50,7 @@ class HIERMATCH_OT_refine(JobOperator, bpy.types.Operator):
     def _finish(self, context: bpy.types.Context, job: RefineJob) -> set[OperatorReturnItems]:
         """Write, remember and report."""
         stored = job.finish()
-        remember(state_of(context).summary, stored, job.names, job.prefix, job.seconds)
-        refresh(cast("bpy.types.Scene", context.scene))
+        show_match(context, stored, job.names, job.prefix, job.seconds)
         if job.moved > _FAR:
             self.report(
                 {"WARNING"},

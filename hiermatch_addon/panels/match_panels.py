@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 import bpy
 
@@ -20,6 +20,7 @@ from .answer_menu import draw_answers
 from .panel_text import draw_label, draw_notes, draw_text, letters_across, wrap_text
 from .preset_menu import HIERMATCH_PT_presets
 from .progress_bar import draw_progress
+from .sidebar import SidebarPanel, folded
 
 if TYPE_CHECKING:
     from ..properties.properties import HIERMATCH_PG_scene, HIERMATCH_PG_summary
@@ -56,14 +57,11 @@ _SENTENCES: Final = {
 """What the groups under Advanced are about, by their titles."""
 
 
-class HIERMATCH_PT_match(bpy.types.Panel):
+class HIERMATCH_PT_match(SidebarPanel, bpy.types.Panel):
     """Choose two meshes, match them, and read how it went."""
 
     bl_label = "HierMatch"
     bl_idname = "HIERMATCH_PT_match"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
 
     def draw_header_preset(self, _context: bpy.types.Context) -> None:
         """Draw the button of the presets."""
@@ -124,27 +122,21 @@ def _name_width() -> float:
 
 def _draw_options(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw the options that are changed now and then."""
-    header, body = cast("Any", layout).panel("hiermatch_options", default_closed=True)
-    draw_label(header, "Options")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_options", "Options")) is not None:
         for name in (*APART, "use_modifiers", "use_landmarks"):
             body.prop(state, name)
 
 
 def _draw_regions(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw what is left out."""
-    header, body = cast("Any", layout).panel("hiermatch_regions", default_closed=True)
-    draw_label(header, "Leave Out")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_regions", "Leave Out")) is not None:
         body.prop(state, "exclude_source", text="Of Source")
         body.prop(state, "exclude_target", text="Of Target")
 
 
 def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw what is written."""
-    header, body = cast("Any", layout).panel("hiermatch_output", default_closed=True)
-    draw_label(header, "Output")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_output", "Output")) is not None:
         body.prop(state, "prefix")
         column = body.column(heading="Write")
         column.prop(state, "write_vertex_groups")
@@ -158,8 +150,7 @@ def _draw_output(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
 
 def _draw_advanced(layout: bpy.types.UILayout, state: HIERMATCH_PG_scene) -> None:
     """Draw the settings that usually stay as they are, as far as they matter, with a sentence for each group."""
-    header, body = cast("Any", layout).panel("hiermatch_advanced", default_closed=True)
-    draw_label(header, "Advanced")
+    body = folded(layout, "hiermatch_advanced", "Advanced")
     if body is None:
         return
     row = body.row(align=True)
@@ -188,9 +179,7 @@ def _draw_faint(layout: bpy.types.UILayout, sentence: str) -> None:
 
 def _draw_more(layout: bpy.types.UILayout) -> None:
     """Draw what is done before and after the work: the demo pair, files, and taking away what was written."""
-    header, body = cast("Any", layout).panel("hiermatch_more", default_closed=True)
-    draw_label(header, "Demo and Files")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_more", "Demo and Files")) is not None:
         column = body.column()
         column.operator("hiermatch.clear", icon="TRASH")
         column.operator("hiermatch.add_demo_pair", icon="ADD")
@@ -240,9 +229,7 @@ def _draw_summary(layout: bpy.types.UILayout, context: bpy.types.Context, state:
     if doubtful:
         box.operator("hiermatch.guide_me", icon="EYEDROPPER")
     draw_answers(box, context, summary)
-    header, body = cast("Any", layout).panel("hiermatch_details", default_closed=True)
-    draw_label(header, "Details")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_details", "Details")) is not None:
         _draw_rows(
             body,
             context,

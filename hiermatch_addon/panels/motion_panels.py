@@ -17,6 +17,7 @@ from ..transfers.retarget_properties import retarget_of
 from .panel_text import letters_across, shortened
 from .progress_bar import draw_progress, draw_starter
 from .retarget_panels import draw_report
+from .sidebar import SidebarPanel
 
 if TYPE_CHECKING:
     from ..properties.bone_pairs import HIERMATCH_PG_bone_pair
@@ -81,14 +82,11 @@ class HIERMATCH_UL_bone_pairs(bpy.types.UIList):
         return flags, []
 
 
-class HIERMATCH_PT_motion(bpy.types.Panel):
+class HIERMATCH_PT_motion(SidebarPanel, bpy.types.Panel):
     """Bring motion from one rig to another."""
 
     bl_label = "Motion"
     bl_idname = "HIERMATCH_PT_motion"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -17,8 +17,9 @@ from ..transfers.options.retarget import KINDS, option_names
 from ..transfers.options.symmetrise import SymmetriseOptions
 from ..transfers.options.wrap import WrapOptions
 from ..transfers.retarget_properties import copy_named, retarget_of, shown_report, shown_target
-from .panel_text import draw_label, draw_notes, draw_text
+from .panel_text import draw_notes, draw_text
 from .progress_bar import draw_progress, draw_starter
+from .sidebar import SidebarPanel, folded
 
 if TYPE_CHECKING:
     from ..transfers.retarget_properties import HIERMATCH_PG_retarget
@@ -33,14 +34,11 @@ _ALONE: Final = {
 """For each switch the operator that carries this kind alone."""
 
 
-class HIERMATCH_PT_retarget(bpy.types.Panel):
+class HIERMATCH_PT_retarget(SidebarPanel, bpy.types.Panel):
     """Carry over what the source has."""
 
     bl_label = "Retarget"
     bl_idname = "HIERMATCH_PT_retarget"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the kinds with their options, the button, and what became of it."""
@@ -61,14 +59,11 @@ class HIERMATCH_PT_retarget(bpy.types.Panel):
         _draw_wrap(layout, context, state)
 
 
-class HIERMATCH_PT_symmetry(bpy.types.Panel):
+class HIERMATCH_PT_symmetry(SidebarPanel, bpy.types.Panel):
     """Make what a mesh carries symmetric."""
 
     bl_label = "Symmetry"
     bl_idname = "HIERMATCH_PT_symmetry"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -99,9 +94,7 @@ def _draw_kind(
 
 def _draw_my_rig(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
     """Draw the options of fitting another armature and its button."""
-    header, body = cast("Any", layout).panel("hiermatch_my_rig", default_closed=True)
-    draw_label(header, "My Rig")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_my_rig", "My Rig")) is not None:
         names = option_names(MyRigOptions)
         for name in names:
             if name != "my_rig_limit" or state.my_rig_bind:
@@ -112,9 +105,7 @@ def _draw_my_rig(layout: bpy.types.UILayout, context: bpy.types.Context, state: 
 
 def _draw_wrap(layout: bpy.types.UILayout, context: bpy.types.Context, state: HIERMATCH_PG_retarget) -> None:
     """Draw the options of a wrap and its button."""
-    header, body = cast("Any", layout).panel("hiermatch_wrap", default_closed=True)
-    draw_label(header, "Wrap and Morph")
-    if body is not None:
+    if (body := folded(layout, "hiermatch_wrap", "Wrap and Morph")) is not None:
         names = option_names(WrapOptions)
         for name in names:
             body.prop(state, name)

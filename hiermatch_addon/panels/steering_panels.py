@@ -17,6 +17,7 @@ from ..scene.character import parts_of
 from ..storage.views.views import VIEW_ITEMS, attribute_of
 from .panel_text import draw_label
 from .progress_bar import draw_progress
+from .sidebar import SidebarPanel
 
 if TYPE_CHECKING:
     from ..properties.steering_properties import HIERMATCH_PG_landmark, HIERMATCH_PG_pair
@@ -77,14 +78,11 @@ class HIERMATCH_UL_pairs(bpy.types.UIList):
         row.operator("hiermatch.remove_pair", text="", icon="X").number = item.number
 
 
-class HIERMATCH_PT_landmarks(bpy.types.Panel):
+class HIERMATCH_PT_landmarks(SidebarPanel, bpy.types.Panel):
     """Correct a match by naming what corresponds."""
 
     bl_label = "Landmarks"
     bl_idname = "HIERMATCH_PT_landmarks"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
     bl_parent_id = "HIERMATCH_PT_match"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -112,14 +110,11 @@ class HIERMATCH_PT_landmarks(bpy.types.Panel):
             _draw_refine(layout, context)
 
 
-class HIERMATCH_PT_overlay(bpy.types.Panel):
+class HIERMATCH_PT_overlay(SidebarPanel, bpy.types.Panel):
     """See in the viewport what corresponds."""
 
     bl_label = "Show"
     bl_idname = "HIERMATCH_PT_overlay"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
     bl_parent_id = "HIERMATCH_PT_match"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -140,14 +135,11 @@ class HIERMATCH_PT_overlay(bpy.types.Panel):
             row.prop(steering, name, toggle=True)
 
 
-class HIERMATCH_PT_pairs(bpy.types.Panel):
+class HIERMATCH_PT_pairs(SidebarPanel, bpy.types.Panel):
     """Judge the matched points one by one, and refine the match."""
 
     bl_label = "Matched Points"
     bl_idname = "HIERMATCH_PT_pairs"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
     bl_parent_id = "HIERMATCH_PT_match"
     bl_options = {"DEFAULT_CLOSED"}
 

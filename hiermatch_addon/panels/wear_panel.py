@@ -20,6 +20,7 @@ from ..transfers.wearing.fit_colors import FIT_NAMES, carriers_of_fit
 from .panel_text import draw_label, draw_text
 from .progress_bar import draw_progress
 from .retarget_panels import draw_report
+from .sidebar import SidebarPanel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -31,14 +32,11 @@ _SHOWN = 6
 """Names of items in the panel, at most."""
 
 
-class HIERMATCH_PT_wear(bpy.types.Panel):
+class HIERMATCH_PT_wear(SidebarPanel, bpy.types.Panel):
     """Fit clothes to another body."""
 
     bl_label = "Wear"
     bl_idname = "HIERMATCH_PT_wear"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "HierMatch"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -18,12 +18,13 @@ from ..scene.mesh_io import unedited
 from ..storage.halves import MIRRORED, find_carriers, is_mirrored, meant
 from ..storage.landmark_layer import has_landmarks
 from ..storage.writing import is_marked
-from .panel_state import summary_of
+from .panel_state import state_of, summary_of
 from .steering_lists import sync_lists
-from .summary import is_of_picked
+from .summary import is_of_picked, remember
 
 if TYPE_CHECKING:
     from ..storage.halves import Half
+    from ..storage.stored_match import StoredMatch
     from .properties import HIERMATCH_PG_summary
 
 _DELAY = 0.3
@@ -56,6 +57,17 @@ def refresh(scene: bpy.types.Scene) -> None:
         # Blender draws again what an operator changed, but not what a timer did.
         redraw_sidebars(cast("bpy.types.WindowManager", bpy.context.window_manager))
     sync_lists(scene)
+
+
+def show_match(
+    context: bpy.types.Context, stored: StoredMatch, names: tuple[str, str], prefix: str, seconds: float = 0.0
+) -> None:
+    """Let the panel tell of a match that was just written between objects of these names.
+
+    Seconds are how long it took; zero if that is not known.
+    """
+    remember(state_of(context).summary, stored, names, prefix, seconds)
+    refresh(cast("bpy.types.Scene", context.scene))
 
 
 def _shown(summary: HIERMATCH_PG_summary) -> tuple[Any, ...]:

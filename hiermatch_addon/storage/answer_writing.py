@@ -3,37 +3,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ...engine import Progress, called_steps, distortion_after, placed_by_map, within
 from . import writing
-from .contents import contents_steps
+from .contents import Restored, contents_steps
 from .stored_match import CornerPoints, Quality
 from .vertex_maps import add_maps, place_points
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from ...engine import DenseMatch, Steps, SurfacePoints, TriangleMesh
+    from ...engine import DenseMatch, Steps, TriangleMesh
     from ..scene.character import Side
     from .contents import Content
     from .stored_match import StoredMatch
     from .vertex_maps import StoredMaps
-
-
-@dataclass(frozen=True, eq=False)
-class Restored:
-    """An answer as the engine had given it; a `Correspondence`."""
-
-    source_points: SurfacePoints
-    target_points: SurfacePoints
-    point_distortion: NDArray[np.float64]
-    source_distances: NDArray[np.float64] | None = None
-    target_distances: NDArray[np.float64] | None = None
 
 
 def restored(stored: StoredMatch, meshes: tuple[TriangleMesh, TriangleMesh]) -> Restored:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...engine import Steps
+    from ...engine import MatchResult, Steps, SurfacePoints
+    from .stored_match import Written
     from .vertex_maps import MapPair
 
 _LABEL = "Preparing what is written"
@@ -27,70 +28,15 @@ UNREACHED = -1.0
 that no matched point has a path to."""
 
 
-class Points(Protocol):
-    """What of points on a surface is needed to write them; see `SurfacePoints`."""
+@dataclass(frozen=True, eq=False)
+class Restored:
+    """What is written of an answer, as the engine had given it; see `MatchResult`."""
 
-    @property
-    def corners(self) -> NDArray[np.int64]:
-        """Vertices of the triangle of each point, (k, 3)."""
-
-    @property
-    def barycentric(self) -> NDArray[np.float64]:
-        """Barycentric coordinates there, (k, 3)."""
-
-    @property
-    def nearest_vertices(self) -> NDArray[np.int64]:
-        """The corner with the largest coordinate, (k,)."""
-
-    @property
-    def positions(self) -> NDArray[np.float64]:
-        """Where the points are, (k, 3)."""
-
-    def __len__(self) -> int: ...
-
-
-class Correspondence(Protocol):
-    """What of a match is needed to write it; see `MatchResult`."""
-
-    @property
-    def source_points(self) -> Points:
-        """Matched points of the source, k."""
-
-    @property
-    def target_points(self) -> Points:
-        """The corresponding points of the target, k."""
-
-    @property
-    def point_distortion(self) -> NDArray[np.float64]:
-        """Distortion of each point, (k,)."""
-
-    @property
-    def source_distances(self) -> NDArray[np.float64] | None:
-        """Geodesic distance from each point to every vertex of the source, (k, n), if it was measured."""
-
-    @property
-    def target_distances(self) -> NDArray[np.float64] | None:
-        """The same on the target, (k, m)."""
-
-
-class Kinds(Protocol):
-    """Which kinds of things are written."""
-
-    @property
-    def vertex_groups(self) -> bool:
-        """A vertex group for each matched point."""
-
-    @property
-    def match_colors(self) -> bool:
-        """Colours that are the same at corresponding places."""
-
-    @property
-    def distortion(self) -> bool:
-        """How much lengths differ around each place, as colours and as numbers."""
-
-    @property
-    def confidence(self) -> bool:
-        """How far the dense maps can be trusted at each place, as colours."""
+    source_points: SurfacePoints
+    target_points: SurfacePoints
+    point_distortion: NDArray[np.float64]
+    source_distances: NDArray[np.float64] | None = None
+    target_distances: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,9 +89,9 @@ class Content:
 
 
 def contents_steps(
-    result: Correspondence,
+    result: MatchResult | Restored,
     prefix: str,
-    kinds: Kinds,
+    kinds: Written,
     maps: MapPair | None = None,
     *,
     left_out: Collection[int] = (),
@@ -154,11 +100,11 @@ def contents_steps(
 
     Parameters
     ----------
-    result : MatchResult or other Correspondence
+    result : MatchResult or Restored
         The match; its distances are used for colors and distortion only, and only if there are no maps.
     prefix : str
         What every name starts with.
-    kinds : Written, JobOptions or other Kinds
+    kinds : Written
         Which kinds to write; confidence only if there are maps.
     maps : MapPair, optional
         The dense maps of the match, if it has any.
@@ -181,7 +127,7 @@ def contents_steps(
     return prepared
 
 
-def _add_mapped_steps(prepared: tuple[Content, Content], maps: MapPair, prefix: str, kinds: Kinds) -> Steps[None]:
+def _add_mapped_steps(prepared: tuple[Content, Content], maps: MapPair, prefix: str, kinds: Written) -> Steps[None]:
     """Add what dense maps tell of every vertex."""
     yield Progress(0.0, _LABEL)
     if kinds.match_colors:
@@ -207,10 +153,10 @@ def _add_mapped_steps(prepared: tuple[Content, Content], maps: MapPair, prefix: 
 
 def _add_spread(
     prepared: tuple[Content, Content],
-    result: Correspondence,
+    result: MatchResult | Restored,
     rows: tuple[NDArray[np.float64], NDArray[np.float64]],
     prefix: str,
-    kinds: Kinds,
+    kinds: Written,
 ) -> None:
     """Add what the matched points tell of the vertices around them, by their distances (k, n) and (k, m)."""
     if not (kinds.match_colors or kinds.distortion):
@@ -237,7 +183,7 @@ def _add_distortion(content: Content, prefix: str, values: NDArray[np.float64], 
 
 
 def _groups(
-    points: Points, prefix: str, left_out: Collection[int] = ()
+    points: SurfacePoints, prefix: str, left_out: Collection[int] = ()
 ) -> dict[str, tuple[NDArray[np.int64], NDArray[np.float64]]]:
     """Name a vertex group for each point: its corners with a positive barycentric coordinate, weighted by it."""
     groups = {}

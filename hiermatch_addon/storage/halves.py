@@ -256,6 +256,26 @@ def find_common(one: Side, other: Side) -> list[tuple[Half, Half]]:
     return pairs
 
 
+def find_match(one: Side, other: Side, prefix: str = "") -> tuple[Half, Half]:
+    """Find the match of two sides with one another: its two halves, in the order of the sides.
+
+    Raises
+    ------
+    ObjectError
+        If there is none with that prefix, or, without one, there are several; or a mesh was edited since.
+    """
+    pair = f'"{one.name}" and "{other.name}"'
+    found = [halves for halves in find_common(one, other) if prefix in ("", halves[0].prefix)]
+    if not found:
+        of_prefix = f' with the Prefix "{prefix}"' if prefix else ""
+        raise ObjectError(f"{pair} carry no match with one another{of_prefix}. Match them first.")
+    if len(found) > 1:
+        prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
+        raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
+    check_fresh(found[0])
+    return found[0]
+
+
 def in_order(one: Half, other: Half) -> tuple[Half, Half]:
     """Put what was matched as the source first."""
     return (one, other) if one.role == "source" else (other, one)

@@ -14,7 +14,7 @@ from ..scene.pair import check_mode, check_pair
 from . import writing
 from .answer_writing import mapped_contents_steps, restored, write_answer
 from .contents import contents_steps
-from .halves import find_common, in_order
+from .halves import find_match, in_order
 from .match_file import MatchFile
 from .stored_match import StoredMatch
 from .vertex_maps import read_all_maps
@@ -44,20 +44,11 @@ def collect_match(one: Side, other: Side, prefix: str = "") -> MatchFile:
     ObjectError
         If they carry no match with one another or several, have other faces since, or are being edited.
     """
-    pair = f'"{one.name}" and "{other.name}"'
-    found = [halves for halves in find_common(one, other) if prefix in ("", halves[0].prefix)]
-    if not found:
-        raise ObjectError(f"{pair} carry no such match with one another. Match them first.")
-    if len(found) > 1:
-        prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
-        raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
-    source, target = in_order(*found[0])
-    for half in (source, target):
-        for part in parts_of(half.obj):
-            check_mode(part)
-        if stale := half.staleness():
-            raise ObjectError(stale)
-    stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=source is not found[0][0])
+    found = find_match(one, other, prefix)
+    source, target = in_order(*found)
+    for part in (*parts_of(one), *parts_of(other)):
+        check_mode(part)
+    stored = replace(StoredMatch.from_plain(source.kept, target.kept), swapped=source is not found[0])
     shown, *others = read_all_maps(source.obj, target.obj, source.prefix, len(stored.answers))
     return MatchFile(stored, (vertex_count(source.obj), vertex_count(target.obj)), shown, tuple(others))
 

@@ -10,7 +10,7 @@ from ...engine import run
 from ..common.errors import ObjectError
 from ..scene.character import read_surface
 from .answer_writing import mapped_contents_steps, write_answer
-from .halves import check_fresh, find_common, in_order
+from .halves import find_match, in_order
 from .stored_match import StoredMatch
 from .vertex_maps import StoredMaps, map_name, read_all_maps
 
@@ -65,16 +65,7 @@ def find_maps(source: Side, target: Side, prefix: str = "") -> FoundMaps:
         If the objects carry no match with one another or several, if it has no dense map, or if a mesh was edited
         since: in a sentence that says which, and what to do.
     """
-    pair = f'"{source.name}" and "{target.name}"'
-    found = [halves for halves in find_common(source, target) if prefix in ("", halves[0].prefix)]
-    if not found:
-        of_prefix = f' with the Prefix "{prefix}"' if prefix else ""
-        raise ObjectError(f"{pair} carry no match with one another{of_prefix}. Match them first.")
-    if len(found) > 1:
-        prefixes = ", ".join(f'"{half.prefix}"' for half, _ in found)
-        raise ObjectError(f"{pair} carry several matches. Name the Prefix of one of them: {prefixes}.")
-    (halves,) = found
-    check_fresh(halves)
+    pair, halves = f'"{source.name}" and "{target.name}"', find_match(source, target, prefix)
     first, second = in_order(*halves)
     stored = StoredMatch.from_plain(first.kept, second.kept)
     if not stored.written.dense:

@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from ...engine import MatchQuality, MatchResult
-    from .contents import Points
+    from ...engine import MatchQuality, MatchResult, SurfacePoints
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ class CornerPoints:
     barycentric: NDArray[np.float64]
 
     @classmethod
-    def of(cls, points: Points) -> CornerPoints:
+    def of(cls, points: SurfacePoints) -> CornerPoints:
         """Take what is stored of points."""
         return cls(points.corners, points.barycentric)
 

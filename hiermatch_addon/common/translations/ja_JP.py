@@ -2433,9 +2433,6 @@ MESSAGES: Final[dict[str, str]] = {
         "マッチングが「{0}」に合いません。頂点か面の番号が書き出し元のメッシュと異なります。元のメッシュを選"
         "ぶか、もう一度マッチングしてください。"
     ),
-    "{0} carry no such match with one another. Match them first.": (
-        "{0}の間にそのようなマッチングはありません。先にマッチングしてください。"
-    ),
     "{0} carry several matches. Name the Prefix of one of them: {1}.": (
         "{0}には複数のマッチングがあります。いずれかの接頭辞を指定してください：{1}。"
     ),

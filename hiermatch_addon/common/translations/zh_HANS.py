@@ -1988,7 +1988,6 @@ MESSAGES: Final[dict[str, str]] = {
         'The match does not fit "{0}": its vertices or faces are numbered otherwise than on the mesh the match '
         "was exported from. Choose that mesh, or match again."
     ): "匹配不适用于“{0}”：其顶点或面的编号与导出匹配的网格不同。请选择那个网格，或重新匹配。",
-    "{0} carry no such match with one another. Match them first.": "{0} 之间没有这样的匹配。请先匹配。",
     "{0} carry several matches. Name the Prefix of one of them: {1}.": "{0} 有多个匹配。请指定其中一个的前缀：{1}。",
     "{0} carry no match with one another{1}. Match them first.": "{0} 之间没有{1}匹配。请先匹配。",
     "The match of {0} has no dense map. Match them again with Dense Map on.": (

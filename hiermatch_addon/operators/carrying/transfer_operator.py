@@ -17,9 +17,9 @@ from ...jobs.match_job import job_options
 from ...jobs.running import start_soon
 from ...jobs.transfer_job import TransferJob, TransferOptions
 from ...panels.question import draw_question
-from ...properties.freshness import refresh
+from ...properties.freshness import refresh, show_match
 from ...properties.panel_state import progress_of, state_of
-from ...properties.summary import pick_named, remember
+from ...properties.summary import pick_named
 from ...scene.pair import lacking_meshes, name_of
 from ...storage.writing import LONGEST_PREFIX
 from ...transfers.retarget_properties import remember_transfer
@@ -177,12 +177,9 @@ class TransferOperator(JobOperator):
         scene = cast("bpy.types.Scene", context.scene)
         if self._named and len(carried) == 1:
             pick_named(scene, self.source, self.targets[0].name)
-        for one in carried:
-            if one.outcome is not None:
-                outcome = one.outcome
-                names = (outcome.source, outcome.target)
-                prefix = self.prefix or state_of(context).prefix
-                remember(state_of(context).summary, outcome.stored, names, prefix, outcome.seconds)
+        for made in (one.outcome for one in carried if one.outcome is not None):
+            prefix = self.prefix or state_of(context).prefix
+            show_match(context, made.stored, made.stored.names, prefix, made.seconds)
         refresh(scene)
         remember_transfer(context, self.panel, (self.source, self.targets[-1].name), carried, self._left_out)
         self._report(carried)

@@ -82,7 +82,7 @@ def test_renaming_moving_and_undoing_do_not_matter(pair):
     bpy.data.objects["Source"].name = "Renamed"
     bpy.data.objects["Target"].location.y = 7
     outcome = drain(job)
-    assert (outcome.source, outcome.target) == ("Renamed", "Target")
+    assert outcome.stored.names == ("Renamed", "Target")
     assert len(weights_of(bpy.data.objects["Renamed"])) == QUICK["points"]
 
 
@@ -140,7 +140,7 @@ def test_looking_at_something_else_loses_nothing(pair, change):
     LOOKS_ELSEWHERE[change](pair)
     bpy.context.view_layer.update()
     outcome = drain(job)
-    assert (outcome.source, outcome.target) == ("Source", "Target")
+    assert outcome.stored.names == ("Source", "Target")
     assert all(len(weights_of(obj)) == QUICK["points"] for obj in pair)
 
 
