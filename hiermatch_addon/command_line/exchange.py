@@ -11,7 +11,6 @@ import bpy
 from ..properties.freshness import show_match
 from ..storage.match_exchange import apply_match, collect_match
 from ..storage.match_file import SUFFIXES, load_match, save_match
-from .command import EXIT_CODES
 from .match import add_pair_arguments, load_pair, save_outputs
 from .outputs import KINDS, output_argument
 from .reports import add_report_options, run_reported
@@ -30,7 +29,6 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         "export",
         help="write the match that two meshes carry into a file",
         description="Write the match that two meshes of .blend files carry into an .npz or .json file.",
-        epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
     parser.add_argument("map", type=output_argument(SUFFIXES), metavar="MATCH", help="The .npz or .json to write.")
@@ -42,7 +40,6 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         help="write the match that a file holds on two meshes",
         description="Write a match from an .npz or .json file on two meshes with the same vertices and faces, in "
         "whatever pose.",
-        epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
     parser.add_argument("map", type=Path, metavar="MATCH", help="The .npz or .json to read.")

@@ -15,7 +15,6 @@ from ..storage import writing
 from ..storage.linked_matches import kept_linked
 from ..storage.match_exchange import collect_match
 from ..storage.match_file import SUFFIXES, save_match
-from .command import EXIT_CODES, ExitCode
 from .console import Console, drive
 from .meshes import load_meshes, mesh_argument
 from .options import add_options, chosen_options, given_options
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..scene.character import Side
+    from .command import ExitCode
 
 
 def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of subparsers has no public type
@@ -36,7 +36,6 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         help="match two meshes",
         description="Find corresponding points of two meshes, whatever their pose, and write them on both.",
         usage="%(prog)s SOURCE TARGET [--output FILE] [--map FILE] [options]",
-        epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
     add_result_options(parser)

@@ -14,7 +14,6 @@ from ..scene.motion.carried_action_io import carried_before
 from ..scene.motion.rigs import rig_of, two_rigs
 from ..transfers.motion.motion_job import MotionJob
 from ..transfers.options.motion import motion_plan
-from .command import EXIT_CODES
 from .match import add_output_option, add_pair_arguments, save_outputs
 from .options import add_options
 from .outputs import MOVING_KINDS
@@ -39,7 +38,6 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         description="Pair the bones of two rigs by the surface that they move, if they are not paired yet, and carry "
         "actions of the source's over. Bodies that carry no match yet are matched first.",
         usage="%(prog)s SOURCE TARGET --output FILE [--action NAME] [options]",
-        epilog=EXIT_CODES,
     )
     add_pair_arguments(parser)
     group = parser.add_argument_group("what is written")

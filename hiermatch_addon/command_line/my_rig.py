@@ -13,11 +13,8 @@ from ..common.phrases import listed
 from ..scene.character import armatures_above
 from ..transfers.my_rig import MyRigTransfer, check_has_body
 from ..transfers.options.my_rig import my_rig_settings
-from .command import EXIT_CODES
-from .match import add_pair_arguments, add_result_options, save_results
-from .options import add_options
-from .reports import add_report_options
-from .retarget import NOT_OF_THE_MATCH, run_transfers, transferring
+from .match import save_results
+from .retarget import add_transfer_arguments, run_transfers, transferring
 
 if TYPE_CHECKING:
     import argparse
@@ -39,13 +36,9 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         "armature that stands in the source, with its joints where they belong in the target. Without --rig it is the "
         "only armature of the files that moves nothing.",
         usage="%(prog)s SOURCE TARGET --output FILE [--rig NAME] [options]",
-        epilog=EXIT_CODES,
     )
-    add_pair_arguments(parser)
-    add_result_options(parser, "the target with its armature, and the fitted rig,")
-    add_report_options(parser)
-    add_options(parser, "fit_my_rig", title="which armature is fitted, and how")
-    add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")
+    written = "the target with its armature, and the fitted rig,"
+    add_transfer_arguments(parser, "fit_my_rig", "which armature is fitted, and how", written)
     parser.set_defaults(run=_run)
 
 

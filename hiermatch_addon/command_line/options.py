@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import bpy
 import numpy as np
 
-from .command import UsageError
+from .command import EXIT_CODES, UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping
@@ -38,7 +38,7 @@ class Parser(argparse.ArgumentParser):
         if "description" in arguments:  # which, unlike the exit codes behind all, is no list
             arguments["description"] = textwrap.fill(arguments["description"], _LINE)
         super().__init__(
-            **{"allow_abbrev": False, "formatter_class": argparse.RawDescriptionHelpFormatter, **arguments}
+            allow_abbrev=False, formatter_class=argparse.RawDescriptionHelpFormatter, epilog=EXIT_CODES, **arguments
         )
 
     def error(self, message: str) -> NoReturn:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ...engine import HierMatchError
 from . import exchange, match, motion, my_rig, retarget, symmetry, wear
 from .batches import batch
-from .command import EXIT_CODES, ExitCode, UsageError
+from .command import ExitCode, UsageError
 from .console import Console
 from .options import Parser
 
@@ -28,7 +28,7 @@ def make_parser() -> Parser:
 
     Each subcommand leaves in `run` what runs it; `check` parses other arguments, for the rows of a batch.
     """
-    parser = Parser(prog="blender --command hiermatch", description=_DESCRIPTION, epilog=EXIT_CODES)
+    parser = Parser(prog="blender --command hiermatch", description=_DESCRIPTION)
     commands = parser.add_subparsers(title="commands", dest="command", metavar="COMMAND", required=True)
     for module in (match, retarget, motion, my_rig, wear, symmetry, exchange, batch):
         module.add_commands(commands)

@@ -16,7 +16,6 @@ from ..properties.freshness import refresh, show_match
 from ..scene.pair import name_of
 from ..transfers.options.retarget import chosen_transfers
 from ..transfers.retarget_properties import remember_transfer
-from .command import EXIT_CODES
 from .console import drive
 from .match import add_pair_arguments, add_result_options, load_pair, save_results, warn_if_nothing_is_written
 from .options import add_options, chosen_options, given_options
@@ -48,14 +47,20 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         help="carry rig, weights, shape keys, UV maps and attributes from one mesh to another",
         description="Match the source with the target if they carry no match yet, and carry over what the source has.",
         usage="%(prog)s SOURCE TARGET --output FILE [--map FILE] [options]",
-        epilog=EXIT_CODES,
     )
-    add_pair_arguments(parser)
-    add_result_options(parser)
-    add_report_options(parser)
-    add_options(parser, "retarget", title="what is carried over")
-    add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")
+    add_transfer_arguments(parser, "retarget", "what is carried over")
     parser.set_defaults(run=_run)
+
+
+def add_transfer_arguments(
+    parser: argparse.ArgumentParser, operator: str, title: str, what: str = "the target with its armature"
+) -> None:
+    """Add what a command takes that carries something over: `what` is written, by options of an operator."""
+    add_pair_arguments(parser)
+    add_result_options(parser, what)
+    add_report_options(parser)
+    add_options(parser, operator, title=title)
+    add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")
 
 
 def _run(parsed: argparse.Namespace, console: Console) -> ExitCode:

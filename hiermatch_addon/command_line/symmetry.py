@@ -20,7 +20,6 @@ from ..storage.stored_match import Answer, CornerPoints, Quality, StoredMatch, W
 from ..storage.vertex_maps import StoredMaps
 from ..transfers.options.symmetrise import symmetrise_settings
 from ..transfers.symmetrise import SymmetriseJob
-from .command import EXIT_CODES
 from .console import drive
 from .match import add_result_options, save_outputs
 from .meshes import load_meshes, mesh_argument
@@ -44,7 +43,6 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         description="Match a mesh with its own mirror image, in any pose, and judge this left-right map.  With --map "
         "it is written; with --output, what the mesh carries is made symmetric and written.",
         usage="%(prog)s MESH [--output FILE] [--map FILE] [options]",
-        epilog=EXIT_CODES,
     )
     parser.add_argument("mesh", type=mesh_argument, metavar="MESH", help="FILE or FILE:OBJECT.")
     add_result_options(parser, "the mesh with its armature")

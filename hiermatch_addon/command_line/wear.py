@@ -13,11 +13,7 @@ from ..scene.character import parts_of
 from ..scene.worn.garments import meshes_of, undressed
 from ..transfers.options.wear import wear_settings
 from ..transfers.wearing.wear_transfer import WearTransfer
-from .command import EXIT_CODES
-from .match import add_pair_arguments, add_result_options
-from .options import add_options
-from .reports import add_report_options
-from .retarget import NOT_OF_THE_MATCH, run_transfers
+from .retarget import add_transfer_arguments, run_transfers
 
 if TYPE_CHECKING:
     import argparse
@@ -39,13 +35,8 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         "armature moves. Of a source that is an armature or a collection, what is not an item is the body. How each "
         "fits is kept on it.",
         usage="%(prog)s SOURCE TARGET --output FILE [--items NAME,NAME,... | --collection NAME] [options]",
-        epilog=EXIT_CODES,
     )
-    add_pair_arguments(parser)
-    add_result_options(parser, "the target with its armature and outfit")
-    add_report_options(parser)
-    add_options(parser, "wear", title="how it is fitted")
-    add_options(parser, "match", without=NOT_OF_THE_MATCH, title="options of the match, if it has to be made")
+    add_transfer_arguments(parser, "wear", "how it is fitted", "the target with its armature and outfit")
     parser.set_defaults(run=_run)
 
 

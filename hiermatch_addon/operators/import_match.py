@@ -11,20 +11,20 @@ import bpy
 from bpy_extras.io_utils import ImportHelper
 
 from ..common.translated_text import translated
-from ..jobs.running import Startable
 from ..properties.freshness import show_match
 from ..properties.panel_state import picked, state_of
 from ..scene.pair import find_pair
 from ..storage.match_exchange import apply_match
 from ..storage.match_file import load_match
 from ..storage.writing import LONGEST_PREFIX
+from .pair_operator import NamedPair
 from .reported_errors import reporting_errors
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_import_match(ImportHelper, Startable, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
+class HIERMATCH_OT_import_match(ImportHelper, NamedPair, bpy.types.Operator):  # type: ignore[misc]  # made to be mixed so
     """Write the match that a file holds on two objects."""
 
     bl_idname = "hiermatch.import_match"
@@ -41,18 +41,6 @@ class HIERMATCH_OT_import_match(ImportHelper, Startable, bpy.types.Operator):  #
 
     filter_glob: bpy.props.StringProperty(
         name="Filter", description="Which files the browser lists", default="*.npz;*.json", options={"HIDDEN"}
-    )
-    source: bpy.props.StringProperty(
-        name="Source",
-        description="Name of the object to be the source; if empty, the one picked in the panel or else the active "
-        "object",
-        options={"SKIP_SAVE"},
-    )
-    target: bpy.props.StringProperty(
-        name="Target",
-        description="Name of the object to be the target; if empty, the one picked in the panel or else the other "
-        "selected mesh",
-        options={"SKIP_SAVE"},
     )
     prefix: bpy.props.StringProperty(
         name="Prefix",

@@ -18,12 +18,13 @@ from ..properties.properties import OUTPUT_NAMES, MatchOptions
 from ..properties.setting_groups import APART, shown_groups
 from ..properties.summary import pick_named
 from ..scene.pair import find_pair, lacking_meshes, left_out_note, name_of, selected_targets
+from .pair_operator import NamedPair
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
 
 
-class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
+class HIERMATCH_OT_match(MatchOptions, NamedPair, JobOperator, bpy.types.Operator):
     """Find corresponding points of two meshes, whatever their pose, and write them on both."""
 
     bl_idname = "hiermatch.match"
@@ -31,19 +32,6 @@ class HIERMATCH_OT_match(MatchOptions, JobOperator, bpy.types.Operator):
     bl_description = (
         "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
         "colors"
-    )
-
-    source: bpy.props.StringProperty(
-        name="Source",
-        description="Name of the object whose points are matched; if empty, the one picked in the panel or else the "
-        "active object",
-        options={"SKIP_SAVE"},
-    )
-    target: bpy.props.StringProperty(
-        name="Target",
-        description="Name of the object on which the corresponding points are sought; if empty, the one picked in the "
-        "panel or else the other selected mesh",
-        options={"SKIP_SAVE"},
     )
 
     doing = "Matching"

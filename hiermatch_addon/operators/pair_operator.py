@@ -35,8 +35,8 @@ _BESIDE_BLEND: Any = (
 """Option of a path that may begin with `//`; Blender 4.3 has no such option, and allows that of all paths."""
 
 
-class PairOperator(Startable):
-    """An operator that does something at once with two sides; to be inherited from before `bpy.types.Operator`."""
+class NamedPair(Startable):
+    """An operator on a source and a target; to be inherited from before `bpy.types.Operator`."""
 
     source: _props.StringProperty(
         name="Source",
@@ -50,6 +50,10 @@ class PairOperator(Startable):
         "other selected one",
         options={"SKIP_SAVE"},
     )
+
+
+class PairOperator(NamedPair):
+    """An operator that does something at once with two sides; to be inherited from before `bpy.types.Operator`."""
 
     if TYPE_CHECKING:
         # With the context and what `_sides` has found: does it, and returns what to report.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...common.file_writing import check_place
-from ..command import EXIT_CODES, ExitCode, UsageError
+from ..command import ExitCode, UsageError
 from ..console import Console, interruptible
 from ..options import add_options, given_options, option_names, quoted_names
 from ..reports import add_least_confidence
@@ -35,7 +35,6 @@ def add_commands(commands: Any) -> None:  # noqa: ANN401 - argparse's action of 
         help="work through a list of pairs",
         description=_DESCRIPTION,
         usage="%(prog)s MANIFEST [--jobs N] [--shard I/N] [options]",
-        epilog=EXIT_CODES,
     )
     parser.add_argument("manifest", type=Path, metavar="MANIFEST", help="The .csv or .json file.")
     group = parser.add_argument_group("how it is done")

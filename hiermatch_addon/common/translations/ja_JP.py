@@ -336,13 +336,6 @@ MESSAGES: Final[dict[str, str]] = {
         "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
         "colors"
     ): "ポーズを問わず二つのメッシュの対応点を求め、両方に頂点グループと色として書き込みます",
-    "Name of the object whose points are matched; if empty, the one picked in the panel or else the active object": (
-        "ポイントをマッチングするオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
-    ),
-    (
-        "Name of the object on which the corresponding points are sought; if empty, the one picked in the panel or "
-        "else the other selected mesh"
-    ): "対応点を探すオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ",
     "End the running match or transfer without writing anything": (
         "何も書き込まずに、実行中のマッチングや転送を終了します"
     ),
@@ -444,12 +437,6 @@ MESSAGES: Final[dict[str, str]] = {
     ): (
         "ファイルにエクスポートしたマッチングを、ポーズを問わず、頂点と面が同じ二つのメッシュに、マッチング直後"
         "のように書き込みます"
-    ),
-    "Name of the object to be the source; if empty, the one picked in the panel or else the active object": (
-        "ソースにするオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
-    ),
-    "Name of the object to be the target; if empty, the one picked in the panel or else the other selected mesh": (
-        "ターゲットにするオブジェクトの名前。空ならパネルで選んだもの、なければ選択中のもう一つのメッシュ"
     ),
     "What the names of everything that is written start with": "書き込むすべてのものの名前の先頭に付く文字列",
     "Add Demo Pair": "デモ用ペアを追加",
@@ -1045,9 +1032,6 @@ MESSAGES: Final[dict[str, str]] = {
     ): (
         "まだならソースとターゲットをマッチングし、ターゲットのポーズ、体格、トポロジーを問わず、リグ、ウェイト"
         "、シェイプキー、UVマップを転送します"
-    ),
-    "Name of the object to carry from; if empty, the one picked in the panel or else the active object": (
-        "転送元のオブジェクトの名前。空ならパネルで選んだもの、なければアクティブオブジェクト"
     ),
     "Name of the object to carry to; if empty, the one picked in the panel or else all other selected meshes": (
         "転送先のオブジェクトの名前。空ならパネルで選んだもの、なければほかの選択中のすべてのメッシュ"

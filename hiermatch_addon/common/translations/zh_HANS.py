@@ -277,13 +277,6 @@ MESSAGES: Final[dict[str, str]] = {
         "Find corresponding points of two meshes, whatever their pose, and write them on both as vertex groups and "
         "colors"
     ): "寻找两个网格的对应点，无论姿态如何，并以顶点组和颜色写入两者",
-    "Name of the object whose points are matched; if empty, the one picked in the panel or else the active object": (
-        "要匹配其上各点的物体名称；为空时使用面板中选取的物体，否则使用活动物体"
-    ),
-    (
-        "Name of the object on which the corresponding points are sought; if empty, the one picked in the panel or "
-        "else the other selected mesh"
-    ): "在其上寻找对应点的物体名称；为空时使用面板中选取的物体，否则使用另一个选中的网格",
     "End the running match or transfer without writing anything": "结束正在运行的匹配或传递，不写入任何内容",
     "Use Setup": "使用配置",
     "Set metric and descriptor as in one of the setups that the paper compares": (
@@ -362,12 +355,6 @@ MESSAGES: Final[dict[str, str]] = {
         "Write a match that was exported to a file on two meshes with the same vertices and faces, in whatever "
         "pose, as if they had just been matched"
     ): "将导出到文件的匹配写入两个顶点和面相同的网格，无论姿态如何，如同刚刚匹配过一样",
-    "Name of the object to be the source; if empty, the one picked in the panel or else the active object": (
-        "作为源的物体名称；为空时使用面板中选取的物体，否则使用活动物体"
-    ),
-    "Name of the object to be the target; if empty, the one picked in the panel or else the other selected mesh": (
-        "作为目标的物体名称；为空时使用面板中选取的物体，否则使用另一个选中的网格"
-    ),
     "What the names of everything that is written start with": "所有写入内容的名称开头",
     "Add Demo Pair": "添加演示对",
     "Add the same cat twice, in two poses and with two different meshes, to try the matching on": (
@@ -856,9 +843,6 @@ MESSAGES: Final[dict[str, str]] = {
         "Match the source with the target if that has not been done, and carry its rig, weights, shape keys and UV "
         "maps over, whatever the pose, build and topology of the target"
     ): "必要时先匹配源与目标，再传递其绑定、权重、形态键和 UV 贴图，无论目标的姿态、体型和拓扑如何",
-    "Name of the object to carry from; if empty, the one picked in the panel or else the active object": (
-        "传递来源的物体名称；为空时使用面板中选取的物体，否则使用活动物体"
-    ),
     "Name of the object to carry to; if empty, the one picked in the panel or else all other selected meshes": (
         "传递去向的物体名称；为空时使用面板中选取的物体，否则使用所有其他选中的网格"
     ),

@@ -23,7 +23,7 @@ from ...properties.summary import pick_named
 from ...scene.pair import lacking_meshes, name_of
 from ...storage.writing import LONGEST_PREFIX
 from ...transfers.retarget_properties import remember_transfer
-from ..pair_operator import pick_sides
+from ..pair_operator import NamedPair, pick_sides
 
 if TYPE_CHECKING:
     from bpy.stub_internal.rna_enums import OperatorReturnItems
@@ -40,14 +40,9 @@ _MENU_WIDTH = 64
 """Letters in a line of the menu that asks."""
 
 
-class TransferOperator(JobOperator):
+class TransferOperator(NamedPair, JobOperator):
     """To be inherited from before `bpy.types.Operator`; what is carried says `_transfers`."""
 
-    source: _props.StringProperty(
-        name="Source",
-        description="Name of the object to carry from; if empty, the one picked in the panel or else the active object",
-        options={"SKIP_SAVE"},
-    )
     target: _props.StringProperty(
         name="Target",
         description="Name of the object to carry to; if empty, the one picked in the panel or else all other "
