@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array
 
 from ..runtime.arrays import Bools, Floats, Ints, slices
 from ..runtime.errors import MatchError
 from .closest_points import ClosestPoints
-from .surface_points import SurfacePoints, at_corners
+from .surface_points import SurfacePoints, at_corners, interpolation_matrix
 from .triangle_mesh import TriangleMesh
 
 _CHUNK = 100_000
@@ -149,6 +150,11 @@ class SurfaceMap:
     def positions(self) -> Floats:
         """Where the points are, (n, 3)."""
         return self.points.positions
+
+    @property
+    def interpolation(self) -> csr_array:
+        """The matrix (n, m) that interpolates values at the vertices of the image for those of the domain."""
+        return interpolation_matrix(self.barycentric, self.corners, self.image_vertex_count)
 
     def transfer(self, values: ArrayLike) -> NDArray[Any]:
         """Carry values at the vertices of the image to those of the domain.

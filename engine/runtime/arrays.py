@@ -98,6 +98,11 @@ def shares_along(points: Floats, starts: Floats, ways: Floats) -> Floats:
     return (((points - starts) * ways).sum(axis=-1) / squares).clip(0, 1)
 
 
+def distances_from_segments(points: Floats, starts: Floats, ways: Floats) -> Floats:
+    """Measure how far points (..., d) are from segments, (...)."""
+    return np.linalg.norm(points - starts - shares_along(points, starts, ways)[..., None] * ways, axis=-1)
+
+
 def lengths_along(points: Floats) -> Floats:
     """Tell how far along a line each of its points (k, d) lies, from 0 at the first on, (k,)."""
     return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))

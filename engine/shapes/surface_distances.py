@@ -30,12 +30,11 @@ class PointDistances(Protocol):
     of `squared_offsets`.
     """
 
-    @property
-    def mesh(self) -> TriangleMesh:
-        """The surface."""
+    mesh: TriangleMesh
 
-    def prepare_steps(self, points: SurfacePoints) -> Steps[None]:
+    def prepare_steps(self, points: SurfacePoints) -> Steps[None]:  # noqa: ARG002  (some need no preparation)
         """Compute what the other methods need for some points, in short steps."""
+        yield from ()
 
     def squares_to_vertices(self, points: SurfacePoints, vertices: Ints) -> Floats:
         """Squared distances from points (k,), prepared, to vertices (v,): (k, v)."""
@@ -44,16 +43,18 @@ class PointDistances(Protocol):
         """Squared distances between points (k,), prepared: (k, k)."""
 
     def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
-        """Compute what `squares_by_nearest` needs for some points, in short steps: less than `prepare_steps` does."""
+        """Compute what `squares_by_nearest` needs for some points, in short steps: less than `prepare_steps` may do."""
+        yield from self.prepare_steps(points)
 
     def squares_by_nearest(self, points: SurfacePoints) -> Floats:
         """Squared distances between points (k,) far from each other: almost those of `squares_between`."""
+        return self.squares_between(points)
 
     def squared_sides(self, triangles: Ints) -> Floats:
         """Squared lengths, in this metric, of the sides 01, 02, 12 of triangles (q,): (q, 3)."""
 
 
-class SurfaceDistances:
+class SurfaceDistances(PointDistances):
     r"""Distances between points inside triangles, interpolated from distances between vertices.
 
     In the plane the squared distance to a fixed point is quadratic, and its deviation from linear inside a triangle is
@@ -82,7 +83,7 @@ class SurfaceDistances:
     """
 
     def __init__(self, shape: Shape, memory: int = _MEMORY) -> None:
-        self.mesh: TriangleMesh = shape.mesh
+        self.mesh = shape.mesh
         self._shape = shape
         self._capacity = max(1, memory // (4 * shape.mesh.vertex_count))
         self._unit = shape.scale**2
@@ -189,7 +190,7 @@ def distances_to_vertices_steps(mesh: TriangleMesh, points: SurfacePoints) -> St
     return (yield from within(SurfaceDistances(shape).to_all_vertices_steps(own), 0.2, 1.0))
 
 
-class EmbeddedDistances:
+class EmbeddedDistances(PointDistances):
     """Straight distances between points of a surface that lies in a space of any dimension.
 
     Diffusion distances are of this kind, with the coordinates exp(-lambda_i t) phi_i.  Coordinates are linear inside
@@ -206,18 +207,6 @@ class EmbeddedDistances:
     def __init__(self, mesh: TriangleMesh, coordinates: Floats) -> None:
         self.mesh = mesh
         self._coordinates = coordinates
-
-    def prepare_steps(self, points: SurfacePoints) -> Steps[None]:  # noqa: ARG002  (see PointDistances)
-        """Do nothing: the distances need no preparation."""
-        yield from ()
-
-    def prepare_nearest_steps(self, points: SurfacePoints) -> Steps[None]:
-        """Do nothing, as `prepare_steps`."""
-        yield from self.prepare_steps(points)
-
-    def squares_by_nearest(self, points: SurfacePoints) -> Floats:
-        """Squared distances between points (k,): (k, k); exact ones."""
-        return self.squares_between(points)
 
     def squares_to_vertices(self, points: SurfacePoints, vertices: Ints) -> Floats:
         """Squared distances from points (k,) to vertices (v,): (k, v)."""

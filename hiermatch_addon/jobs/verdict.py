@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from ...engine import MatchQuality, TriangleMesh
     from ..scene.character import Side
-    from ..storage.stored_match import Quality
 
 GOOD: Final = 0.7
 """Confidence from which on a match is called good."""
@@ -54,7 +53,7 @@ class Verdict:
     advice: str = ""
 
     @classmethod
-    def of(cls, quality: MatchQuality | Quality, advice: str = "") -> Verdict:
+    def of(cls, quality: MatchQuality, advice: str = "") -> Verdict:
         """Take what matters of a quality."""
         return cls(float(quality.confidence), quality.sentence, advice)
 
@@ -72,7 +71,7 @@ class Verdict:
 
 
 def advice_on(
-    quality: Quality | MatchQuality,
+    quality: MatchQuality,
     names: tuple[str, str],
     meshes: tuple[TriangleMesh, TriangleMesh],
     *,
@@ -86,7 +85,7 @@ def advice_on(
 
     Parameters
     ----------
-    quality : Quality or MatchQuality
+    quality : MatchQuality
         How far the match can be trusted, and how much of either mesh has a partner.
     names : tuple of str
         What source and target are called.
@@ -145,7 +144,7 @@ def hung_on_bones(side: Side) -> list[str]:
     return names if len(names) < len(parts) else []
 
 
-def asymmetry_note(name: str, quality: Quality | MatchQuality) -> str:
+def asymmetry_note(name: str, quality: MatchQuality) -> str:
     """Say that a mesh is hardly its own mirror image, by the quality of its left-right map; empty if it is."""
     if quality.confidence >= GOOD:
         return ""

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
     from ..scene.character import Side
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 _BESIDE_BLEND: Any = (
     {"PATH_SUPPORTS_BLEND_RELATIVE"}
@@ -38,13 +37,13 @@ _BESIDE_BLEND: Any = (
 class NamedPair(Startable):
     """An operator on a source and a target; to be inherited from before `bpy.types.Operator`."""
 
-    source: _props.StringProperty(
+    source: bpy.props.StringProperty(
         name="Source",
         description="Name of the object that is the source; if empty, the one picked in the panel or else the "
         "active object",
         options={"SKIP_SAVE"},
     )
-    target: _props.StringProperty(
+    target: bpy.props.StringProperty(
         name="Target",
         description="Name of the object that is the target; if empty, the one picked in the panel or else the "
         "other selected one",
@@ -81,13 +80,13 @@ class FileOperator(Startable):
         What is proposed.
     """
 
-    filepath: _props.StringProperty(
+    filepath: bpy.props.StringProperty(
         name="File",
         description="Path of the file, a JSON text",
         subtype="FILE_PATH",
         options=_BESIDE_BLEND,
     )
-    filter_glob: _props.StringProperty(
+    filter_glob: bpy.props.StringProperty(
         name="Filter", description="Which files are listed", default="*.json", options={"HIDDEN"}
     )
 

@@ -25,7 +25,6 @@ from ..transfers.options.wear import WearOptions
 from ..transfers.options.wrap import WrapOptions
 from ..transfers.retarget_properties import retarget_of
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 _utils: Any = bpy.utils  # of which they do not know all
 
 _FOLDER: Final = str(Path(__file__).parents[1])
@@ -80,15 +79,15 @@ class HIERMATCH_OT_add_preset(AddPresetBase, bpy.types.Operator):  # type: ignor
         *(f"bpy.context.scene.hiermatch_retarget.{name}" for name in RETARGET_NAMES),
     ]
 
-    name: _props.StringProperty(
+    name: bpy.props.StringProperty(
         name="Name", description="Name of the preset, of which its file is named", maxlen=64, options={"SKIP_SAVE"}
     )
-    remove_name: _props.BoolProperty(
+    remove_name: bpy.props.BoolProperty(
         name="Remove by Name",
         description="Remove the preset of that name instead of saving one",
         options={"HIDDEN", "SKIP_SAVE"},
     )
-    remove_active: _props.BoolProperty(
+    remove_active: bpy.props.BoolProperty(
         name="Remove Active",
         description="Remove the preset that was chosen last instead of saving one",
         options={"HIDDEN", "SKIP_SAVE"},

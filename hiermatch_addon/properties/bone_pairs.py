@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 _FORMAT, _VERSION = "HierMatch bone pairs", 1
 
@@ -49,50 +48,52 @@ def _unsee(row: Any, _context: bpy.types.Context) -> None:  # noqa: ANN401 - a r
 class HIERMATCH_PG_bone_pair(bpy.types.PropertyGroup):
     """A pair of bones: a row of the table of two armatures."""
 
-    source: _props.StringProperty(name="Source Bone", description="Bone of the source; empty for none", update=_unsee)
-    target: _props.StringProperty(
+    source: bpy.props.StringProperty(
+        name="Source Bone", description="Bone of the source; empty for none", update=_unsee
+    )
+    target: bpy.props.StringProperty(
         name="Target Bone", description="Bone of the target that stands for it", update=_unsee
     )
-    score: _props.FloatProperty(
+    score: bpy.props.FloatProperty(
         name="Score", description="How well the two agree, from 0 to 1", min=0, max=1, default=1
     )
-    locked: _props.BoolProperty(
+    locked: bpy.props.BoolProperty(
         name="Lock", description="Keep this row when bones are paired again; without a source, the bone stays alone"
     )
-    source_rig: _props.PointerProperty(
+    source_rig: bpy.props.PointerProperty(
         name="Source Rig", description="Armature of the source", type=bpy.types.Object, poll=_is_armature
     )
-    target_rig: _props.PointerProperty(
+    target_rig: bpy.props.PointerProperty(
         name="Target Rig", description="Armature of the target", type=bpy.types.Object, poll=_is_armature
     )
-    turn: _props.FloatVectorProperty(
+    turn: bpy.props.FloatVectorProperty(
         name="Turn",
         description="How the target's surface is turned against the source's at rest, in the spaces of the armatures",
         size=4,
         subtype="QUATERNION",
         default=(1, 0, 0, 0),
     )
-    place: _props.FloatVectorProperty(
+    place: bpy.props.FloatVectorProperty(
         name="Place", description="Where the head of the source bone lies in the target, in the target armature's space"
     )
-    upright: _props.FloatVectorProperty(
+    upright: bpy.props.FloatVectorProperty(
         name="Standing",
         description="How the target stands, turned against the source, in the spaces of the armatures",
         size=4,
         subtype="QUATERNION",
         default=(1, 0, 0, 0),
     )
-    source_rest: _props.FloatVectorProperty(
+    source_rest: bpy.props.FloatVectorProperty(
         name="Source Bone at Rest",
         description="Head, tail and a point beside the head of the source bone when turn and place were seen",
         size=REST_NUMBERS,
     )
-    target_rest: _props.FloatVectorProperty(
+    target_rest: bpy.props.FloatVectorProperty(
         name="Target Bone at Rest",
         description="Head, tail and a point beside the head of the target bone when turn and place were seen",
         size=REST_NUMBERS,
     )
-    is_seen: _props.BoolProperty(
+    is_seen: bpy.props.BoolProperty(
         name="Seen", description="Whether turn and place were seen on the surface; a row made by hand has none"
     )
 

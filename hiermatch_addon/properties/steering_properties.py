@@ -12,8 +12,6 @@ from ..common.redraw import redraw_views
 from ..storage.landmarks import find_landmarks, rename_landmark
 from .steering_lists import landmark_label, steered_pair
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
-
 
 def _redraw(_owner: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     """Draw the overlay anew, in all viewports."""
@@ -34,67 +32,69 @@ def _rename(row: Any, _context: bpy.types.Context) -> None:  # noqa: ANN401 - a 
 class HIERMATCH_PG_landmark(bpy.types.PropertyGroup):
     """A row of the list of landmarks."""
 
-    label: _props.StringProperty(
+    label: bpy.props.StringProperty(
         name="Name", description="What the landmark is called; double-click to change it", update=_rename
     )
-    number: _props.IntProperty(name="Number", description="By which the landmark is known on both meshes")
-    source: _props.IntProperty(name="Source Vertex", description="Vertex of the source")
-    target: _props.IntProperty(name="Target Vertex", description="Vertex of the target that corresponds to it")
-    use: _props.BoolProperty(name="Use", description="Whether a match keeps to the landmark", default=True)
+    number: bpy.props.IntProperty(name="Number", description="By which the landmark is known on both meshes")
+    source: bpy.props.IntProperty(name="Source Vertex", description="Vertex of the source")
+    target: bpy.props.IntProperty(name="Target Vertex", description="Vertex of the target that corresponds to it")
+    use: bpy.props.BoolProperty(name="Use", description="Whether a match keeps to the landmark", default=True)
 
 
 class HIERMATCH_PG_pair(bpy.types.PropertyGroup):
     """A row of the list of matched points."""
 
-    number: _props.IntProperty(name="Number", description="Which of the matched points it is, from 1")
-    source: _props.IntProperty(name="Source Vertex", description="Vertex of the source that is nearest to the point")
-    target: _props.IntProperty(name="Target Vertex", description="Vertex of the target that is nearest to the point")
-    source_corners: _props.IntVectorProperty(name="Source Corners", description="Vertices around the point")
-    source_weights: _props.FloatVectorProperty(name="Source Weights", description="Where it is between them")
-    target_corners: _props.IntVectorProperty(
+    number: bpy.props.IntProperty(name="Number", description="Which of the matched points it is, from 1")
+    source: bpy.props.IntProperty(name="Source Vertex", description="Vertex of the source that is nearest to the point")
+    target: bpy.props.IntProperty(name="Target Vertex", description="Vertex of the target that is nearest to the point")
+    source_corners: bpy.props.IntVectorProperty(name="Source Corners", description="Vertices around the point")
+    source_weights: bpy.props.FloatVectorProperty(name="Source Weights", description="Where it is between them")
+    target_corners: bpy.props.IntVectorProperty(
         name="Target Corners", description="Vertices around the corresponding point"
     )
-    target_weights: _props.FloatVectorProperty(name="Target Weights", description="Where it is between them")
-    distortion: _props.FloatProperty(
+    target_weights: bpy.props.FloatVectorProperty(name="Target Weights", description="Where it is between them")
+    distortion: bpy.props.FloatProperty(
         name="Distortion",
         description="How much the distances from this point to the others differ between the two meshes, in units of "
         "the square root of the surface area",
     )
-    locked: _props.BoolProperty(name="Locked", description="Whether the point is a landmark, too")
+    locked: bpy.props.BoolProperty(name="Locked", description="Whether the point is a landmark, too")
 
 
 class HIERMATCH_PG_steering(bpy.types.PropertyGroup):
     """The state of the panels for steering a match on a scene."""
 
-    landmarks: _props.CollectionProperty(
+    landmarks: bpy.props.CollectionProperty(
         name="Landmarks", description="Landmarks that source and target have in common", type=HIERMATCH_PG_landmark
     )
-    landmark_index: _props.IntProperty(
+    landmark_index: bpy.props.IntProperty(
         name="Landmark", description="The row of the list of landmarks that is active", min=0, update=_redraw
     )
-    pairs: _props.CollectionProperty(
+    pairs: bpy.props.CollectionProperty(
         name="Matched Points", description="The matched points, the worst first", type=HIERMATCH_PG_pair
     )
-    pair_index: _props.IntProperty(
+    pair_index: bpy.props.IntProperty(
         name="Matched Point", description="The row of the list of matched points that is active", min=0, update=_redraw
     )
-    before: _props.StringProperty(name="Before", description="What was shown before, as a JSON text; empty if nothing")
-    revision: _props.IntProperty(name="Revision", description="Grows with each change of a list")
-    show_overlay: _props.BoolProperty(
+    before: bpy.props.StringProperty(
+        name="Before", description="What was shown before, as a JSON text; empty if nothing"
+    )
+    revision: bpy.props.IntProperty(name="Revision", description="Grows with each change of a list")
+    show_overlay: bpy.props.BoolProperty(
         name="Show in Viewport",
         description="Draw matched points and landmarks on both meshes in the 3D viewports",
         update=_redraw,
     )
-    show_points: _props.BoolProperty(
+    show_points: bpy.props.BoolProperty(
         name="Points",
         description="Draw the matched points, from blue to yellow by distortion",
         default=True,
         update=_redraw,
     )
-    show_lines: _props.BoolProperty(
+    show_lines: bpy.props.BoolProperty(
         name="Lines", description="Draw a line between the two places of each point", default=True, update=_redraw
     )
-    show_labels: _props.BoolProperty(
+    show_labels: bpy.props.BoolProperty(
         name="Numbers", description="Write the numbers of landmarks and of the worst points beside them", update=_redraw
     )
 

@@ -22,7 +22,7 @@ from .attribute_io import read_polygons
 from .mesh_io import position_digest, read_mesh, topology, vertex_positions
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
@@ -281,7 +281,9 @@ def read_surface(side: Side, depsgraph: bpy.types.Depsgraph, *, use_modifiers: b
 
     What is left out of a character is there only with modifiers, which may number triangles anew.
     """
-    mesh = joined_mesh([read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)])
+    mesh = TriangleMesh.concatenated(
+        [read_mesh(part, depsgraph, use_modifiers=use_modifiers) for part in parts_of(side)]
+    )
     if use_modifiers or not isinstance(side, Character) or not side.left_out:
         return mesh
     return TriangleMesh(mesh.vertices, np.delete(mesh.triangles, sorted(side.left_out), axis=0))
@@ -290,17 +292,6 @@ def read_surface(side: Side, depsgraph: bpy.types.Depsgraph, *, use_modifiers: b
 def whole(side: Side) -> Side:
     """Return a side with what is left out of it."""
     return replace(side, left_out=frozenset()) if isinstance(side, Character) else side
-
-
-def joined_mesh(meshes: Sequence[TriangleMesh]) -> TriangleMesh:
-    """Make one surface of several."""
-    if len(meshes) == 1:
-        return meshes[0]
-    starts = np.cumsum([0, *(mesh.vertex_count for mesh in meshes)])[:-1]
-    return TriangleMesh(
-        np.concatenate([mesh.vertices for mesh in meshes]),
-        np.concatenate([mesh.triangles + start for mesh, start in zip(meshes, starts, strict=True)]),
-    )
 
 
 def read_faces(side: Side) -> Polygons:

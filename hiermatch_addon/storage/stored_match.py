@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...engine import DIRECT, MIRRORED, exchanged_sentence
+from ...engine import DIRECT, MIRRORED, MatchQuality, exchanged_sentence
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from ...engine import MatchQuality, MatchResult, SurfacePoints
+    from ...engine import MatchResult, SurfacePoints
 
 
 @dataclass(frozen=True)
@@ -90,40 +90,8 @@ class CornerPoints:
         )
 
 
-@dataclass(frozen=True)
-class Quality:
-    """How far the dense maps of an answer can be trusted; see the engine's `MatchQuality`.
-
-    Attributes
-    ----------
-    orientation, distortion, coverage, disagreement, confidence : float
-        As the engine measured them.
-    margin : float or None
-        By how much the best competing answer is worse; None if there was none.
-    sentence : str
-        The same for a person to read.
-    source_coverage, pieces_alone : float
-        As the engine measured them; files of before do not know them.
-    likeness : float or None
-        How credible the map is as a whole, where that was measured.
-    alternatives : int
-        How many other answers are about as likely.
-    in_place : float
-        How probably the map is right because it leaves everything where it stands.
-    """
-
-    orientation: float
-    distortion: float
-    coverage: float
-    disagreement: float
-    margin: float | None
-    confidence: float
-    sentence: str
-    source_coverage: float = 1.0
-    likeness: float | None = None
-    pieces_alone: float = 0.0
-    alternatives: int = 0
-    in_place: float = 0.0
+class Quality(MatchQuality):
+    """How far the dense maps of an answer can be trusted, as files keep it."""
 
     @classmethod
     def of(cls, quality: MatchQuality) -> Quality:

@@ -33,8 +33,6 @@ _SESSIONS: Final = 1 << 30
 _SESSION: Final = secrets.randbelow(_SESSIONS)
 """A number of this session: in another one, Blender gives the same objects other numbers."""
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
-
 
 class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     """What became of a transfer; it is there if `done` is not empty.
@@ -43,29 +41,31 @@ class HIERMATCH_PG_report(bpy.types.PropertyGroup):
     gives to objects for one session.
     """
 
-    source: _props.StringProperty(name="Source", description="Name of the source object")
-    target: _props.StringProperty(name="Target", description="Name of the target object; of several, of the last one")
-    done: _props.StringProperty(name="Done", description="What was carried over to which object, one per line")
-    notes: _props.StringProperty(
+    source: bpy.props.StringProperty(name="Source", description="Name of the source object")
+    target: bpy.props.StringProperty(
+        name="Target", description="Name of the target object; of several, of the last one"
+    )
+    done: bpy.props.StringProperty(name="Done", description="What was carried over to which object, one per line")
+    notes: bpy.props.StringProperty(
         name="Notes", description="What was left out, or should be known, and why: one sentence per line"
     )
-    remarks: _props.StringProperty(
+    remarks: bpy.props.StringProperty(
         name="Remarks",
         description="What was left out, or should be known, but is no reason to worry: one sentence per line",
     )
-    verdict: _props.StringProperty(
+    verdict: bpy.props.StringProperty(
         name="Verdict",
         description="How far the matches can be trusted, one sentence per line; empty if that is unknown",
     )
-    doubtful: _props.BoolProperty(name="Doubtful", description="Whether one of the matches is not to be trusted")
-    seconds: _props.FloatProperty(name="Seconds", description="How long it took")
-    source_uid: _props.IntProperty(
+    doubtful: bpy.props.BoolProperty(name="Doubtful", description="Whether one of the matches is not to be trusted")
+    seconds: bpy.props.FloatProperty(name="Seconds", description="How long it took")
+    source_uid: bpy.props.IntProperty(
         name="Source Number", description="By what number Blender knows the first object of the source"
     )
-    target_uid: _props.IntProperty(
+    target_uid: bpy.props.IntProperty(
         name="Target Number", description="By what number Blender knows the first object of the target"
     )
-    session: _props.IntProperty(
+    session: bpy.props.IntProperty(
         name="Session", description="In which session these numbers hold; in others, names are gone by"
     )
 
@@ -75,17 +75,17 @@ class HIERMATCH_PG_retarget(
 ):
     """The state of the retargeting panels on a scene."""
 
-    refine: _props.BoolProperty(
+    refine: bpy.props.BoolProperty(
         name="Refine with Rig",
         description="If the source has a rig, fit it into the target and make the map of the match better with it, "
         "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
         default=True,
     )
-    bone_pair: _props.IntProperty(name="Pair", description="The row of the table of bones that is active", min=0)
-    report: _props.PointerProperty(
+    bone_pair: bpy.props.IntProperty(name="Pair", description="The row of the table of bones that is active", min=0)
+    report: bpy.props.PointerProperty(
         name="Report", description="What became of the last transfer", type=HIERMATCH_PG_report
     )
-    reports: _props.CollectionProperty(
+    reports: bpy.props.CollectionProperty(
         name="Reports",
         description="What became of the last transfer of each panel, by the panel's identifier",
         type=HIERMATCH_PG_report,

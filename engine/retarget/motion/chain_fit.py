@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.procrustes import nearest_rotations
-from ...runtime.arrays import TINY, Floats, Ints, shares_along
+from ...runtime.arrays import TINY, Floats, Ints, distances_from_segments
 from ..rig.skeleton import Skeleton
 from .bone_pairing import BonePairing
 from .limbs import Limb
@@ -260,8 +260,7 @@ class _Rigs:
         for bone in bones:
             shares = (np.arange(_SAMPLES) + 0.5)[:, None] / _SAMPLES
             points = (1 - shares) * self.target.heads[bone] + shares * self.ends[bone]
-            nearest = starts + shares_along(points[:, None], starts, ways)[:, :, None] * ways
-            lines_of = np.linalg.norm(points[:, None] - nearest, axis=2).argmin(axis=1)
+            lines_of = distances_from_segments(points[:, None], starts, ways).argmin(axis=1)
             mass = self.lengths[bone] / _SAMPLES
             found += [_Point(point, bone, lines[line][0], mass) for point, line in zip(points, lines_of, strict=True)]
         return found

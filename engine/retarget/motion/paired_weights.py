@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from ...runtime.arrays import TINY, Floats, Ints, eased, lengths_along, shares_along
+from ...runtime.arrays import TINY, Floats, Ints, distances_from_segments, eased, lengths_along, shares_along
 from ...runtime.errors import RigError
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_shares, row_sums
@@ -94,12 +94,9 @@ def _along(points: Floats, chain: Ints, bones: Skeleton) -> Floats:
     joints = np.concatenate([bones.heads[chain], bones.tails[chain[-1]][None]])
     steps, starts = np.diff(joints, axis=0), lengths_along(joints)
     lengths = np.diff(starts)
-    shares = shares_along(points[:, None], joints[:-1], steps)
-    nearest = joints[:-1] + shares[:, :, None] * steps
-    closest = np.linalg.norm(points[:, None] - nearest, axis=2).argmin(axis=1)
+    closest = distances_from_segments(points[:, None], joints[:-1], steps).argmin(axis=1)
     # The place along the whole chain, measured from its start; beyond its ends nothing goes over.
-    rows = np.arange(len(points))
-    place = starts[closest] + shares[rows, closest] * lengths[closest]
+    place = starts[closest] + shares_along(points, joints[closest], steps[closest]) * lengths[closest]
     result = np.ones((len(points), len(chain)))
     for joint in range(1, len(chain)):
         width = max(_WIDTH * min(lengths[joint - 1], lengths[joint]), TINY)

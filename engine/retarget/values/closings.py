@@ -145,7 +145,7 @@ def closings_kept_steps(
     given, result = np.asarray(offsets, np.float64), np.array(carried, np.float64)
     _check(source, given, maps, target, result)
     yield Progress(0.0, "Carrying offsets")
-    images = interpolation_matrix(maps[0].barycentric, maps[0].corners, target.vertex_count)
+    images = maps[0].interpolation
     trips = np.linalg.norm(images @ maps[1].positions - source.vertices, axis=1)
     seeking, ways = _Seeking(source, trips), None
     for number, key in enumerate(given):

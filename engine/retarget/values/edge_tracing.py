@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from ...mesh.connectivity.edge_chains import edge_chains, way_to_root
 from ...mesh.surface_map import SurfaceMap
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import TINY, Floats, Ints, lengths_along, ranges, shares_along
+from ...runtime.arrays import TINY, Floats, Ints, distances_from_segments, lengths_along, ranges
 from ...runtime.errors import MatchError
 from ...runtime.progress import Progress, Steps
 
@@ -135,7 +135,7 @@ def nearest_edge_values(
     middles = target_to_source.positions[edges].mean(axis=1)
     found = cKDTree(ends.mean(axis=1)).query(middles, np.arange(1, min(_TRIED, len(ends)) + 1))[1]
     start, along = ends[found, 0], ends[found, 1] - ends[found, 0]  # (e_y, tried, 3)
-    away = _from_segments(middles[:, None], start, along)
+    away = distances_from_segments(middles[:, None], start, along)
     return values[np.take_along_axis(found, away.argmin(axis=1)[:, None], axis=1)[:, 0]]
 
 
@@ -254,17 +254,12 @@ def _with_bends(points: Floats, chosen: list[int], step: float) -> Ints:
         first, last = left.pop()
         if last - first < 2:
             continue
-        away = _from_segments(points[first + 1 : last], points[first], points[last] - points[first])
+        away = distances_from_segments(points[first + 1 : last], points[first], points[last] - points[first])
         if away.max() > step:
             bend = first + 1 + int(away.argmax())
             kept.add(bend)
             left += [(first, bend), (bend, last)]
     return np.array(sorted(kept))
-
-
-def _from_segments(points: Floats, starts: Floats, ways: Floats) -> Floats:
-    """Distances of points (..., 3) from segments, (...)."""
-    return np.linalg.norm(points - starts - shares_along(points, starts, ways)[..., None] * ways, axis=-1)
 
 
 def _sampled(points: Floats, spacing: float) -> tuple[Floats, Ints]:

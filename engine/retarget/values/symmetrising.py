@@ -11,7 +11,6 @@ from scipy.sparse import csr_array, diags_array
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
 from ...mesh.surface_map import SurfaceMap
-from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
 from ...runtime.arrays import TINY, Bools, Floats, Ints
 from ...runtime.errors import MatchError
@@ -98,8 +97,7 @@ class Symmetriser:
         (n, g) csr_array of float
             The weights.
         """
-        carry = interpolation_matrix(self.mirror.barycentric, self.mirror.corners, len(self.mirror))
-        mirrored = csr_array(carry @ weights[:, partners])
+        mirrored = csr_array(self.mirror.interpolation @ weights[:, partners])
         result = csr_array(diags_array(self.own) @ weights + diags_array(1 - self.own) @ mirrored)
         result.eliminate_zeros()
         return result
@@ -107,10 +105,8 @@ class Symmetriser:
     def offsets(self, offsets: Floats, partners: Ints) -> Floats:
         """Make offsets (k, n, 3) of shape keys symmetric; `partners` (k,) are the keys of the other side."""
         own = self.own[:, None]
-        mirrored = np.empty_like(offsets)
-        for number, other in enumerate(partners.tolist()):
-            mirrored[number] = self.mirrored_offsets(offsets[other])
-        return own * offsets + (1 - own) * mirrored
+        mirrored = [self.mirrored_offsets(each) for each in offsets[partners]]
+        return own * offsets + (1 - own) * np.reshape(mirrored, offsets.shape)
 
     def mirrored_offsets(self, offsets: Floats) -> Floats:
         """Take offsets (n, 3) of all vertices to the mirror images, both ways."""

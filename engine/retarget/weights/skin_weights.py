@@ -10,7 +10,6 @@ import numpy as np
 from scipy.sparse import csr_array, diags_array, vstack
 
 from ...mesh.surface_map import SurfaceMap
-from ...mesh.surface_points import interpolation_matrix
 from ...runtime.arrays import Bools, Floats, Ints, group_largest
 from ...runtime.errors import MatchError, RigError
 
@@ -43,8 +42,7 @@ def carried(weights: csr_array, surface_map: SurfaceMap) -> csr_array:
             f"There should be weights for each of the {surface_map.image_vertex_count} vertices that the map leads "
             f"to, but there are {weights.shape[0]} rows."
         )
-    corners = interpolation_matrix(surface_map.barycentric, surface_map.corners, weights.shape[0])
-    return _clean(csr_array(corners @ weights))
+    return _clean(csr_array(surface_map.interpolation @ weights))
 
 
 def mixed(

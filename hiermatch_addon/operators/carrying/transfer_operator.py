@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...transfers.motion.motion_job import MotionJob
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 _MENU_WIDTH = 64
 """Letters in a line of the menu that asks."""
@@ -43,32 +42,32 @@ _MENU_WIDTH = 64
 class TransferOperator(NamedPair, JobOperator):
     """To be inherited from before `bpy.types.Operator`; what is carried says `_transfers`."""
 
-    target: _props.StringProperty(
+    target: bpy.props.StringProperty(
         name="Target",
         description="Name of the object to carry to; if empty, the one picked in the panel or else all other "
         "selected meshes",
         options={"SKIP_SAVE"},
     )
-    targets: _props.CollectionProperty(
+    targets: bpy.props.CollectionProperty(
         name="Targets",
         description="Names of several objects to carry to",
         type=bpy.types.OperatorFileListElement,
         options={"HIDDEN", "SKIP_SAVE"},
     )
-    prefix: _props.StringProperty(
+    prefix: bpy.props.StringProperty(
         name="Prefix",
         description="What the names start with that the match to use wrote; if empty, the one match that the "
         "objects carry",
         maxlen=LONGEST_PREFIX,
         options={"SKIP_SAVE"},
     )
-    refine: _props.BoolProperty(
+    refine: bpy.props.BoolProperty(
         name="Refine with Rig",
         description="If the source has a rig, fit it into the target and make the map of the match better with it, "
         "once for each match. It takes some seconds, and weights, joints and shape keys gain much",
         default=True,
     )
-    accept_doubtful: _props.BoolProperty(
+    accept_doubtful: bpy.props.BoolProperty(
         name="Accept Doubtful",
         description="Write the result also if the match is not to be trusted, with a confidence below 30 percent. "
         "In a window you are asked",

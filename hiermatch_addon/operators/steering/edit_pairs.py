@@ -23,13 +23,11 @@ if TYPE_CHECKING:
     from ...scene.character import Side
     from ...storage.halves import Half
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
-
 
 class _PairOperator(LandmarkOperator):
     """An operator on one of the matched points."""
 
-    number: _props.IntProperty(
+    number: bpy.props.IntProperty(
         name="Number",
         description="Which matched point; if zero, the one that is active in the list",
         min=0,

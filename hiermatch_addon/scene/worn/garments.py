@@ -11,12 +11,12 @@ import numpy as np
 from mathutils import Matrix
 from scipy.sparse import csr_array, vstack
 
-from ....engine import continues_body, ends_at_joint, hanging_triangles
+from ....engine import TriangleMesh, continues_body, ends_at_joint, hanging_triangles
 from ...common.access import mesh_of, view_layer_of
 from ...common.errors import ObjectError
 from ...common.phrases import listed
 from ..armatures import find_armature, held_by, moving_armatures, read_rig
-from ..character import Character, joined, joined_mesh, parts_of, vertex_ranges
+from ..character import Character, joined, parts_of, vertex_ranges
 from ..key_drivers import counterparts, point_drivers
 from ..mesh_io import read_mesh
 from ..pair import check_object
@@ -127,7 +127,7 @@ def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph
 
     def is_body(item: bpy.types.Object, rest: Sequence[bpy.types.Object]) -> bool:
         """Tell whether an item is a part of the body that the rest lacks."""
-        below = joined_mesh([meshes[part] for part in rest])
+        below = TriangleMesh.concatenated([meshes[part] for part in rest])
         if continues_body(below, meshes[item]):
             return True
         if rig is None:
@@ -142,7 +142,8 @@ def undressed(body: Side, items: Collection[str], depsgraph: bpy.types.Depsgraph
             parts = tuple(rest)
     left = joined(body.name, parts)
     cloth = [np.full(meshes[part].triangle_count, part.name in items) for part in parts_of(left)]
-    hanging = hanging_triangles(joined_mesh([meshes[part] for part in parts_of(left)]), np.concatenate(cloth))
+    surface = TriangleMesh.concatenated([meshes[part] for part in parts_of(left)])
+    hanging = hanging_triangles(surface, np.concatenate(cloth))
     return replace(left, left_out=frozenset(np.flatnonzero(hanging).tolist())) if isinstance(left, Character) else left
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -71,9 +71,7 @@ class PairedWeightTransfer(Transfer):
             raise ObjectError(f'The bones of "{armature.name}" were changed. Pair the bones again.')
         matrix = np.array(own.matrix_world, np.float64)
         placed = pairing.places @ matrix[:3, :3].T + matrix[:3, 3]
-        worldly = type(pairing)(
-            pairing.sources, pairing.targets, pairing.scores, pairing.rotations, placed, pairing.upright
-        )
+        worldly = replace(pairing, places=placed)
         locked = locked_groups(target)
         deforming = np.array([bone.use_deform for bone in armature_of(own).bones], bool)
         held = np.array([name in locked for name in names], bool)

@@ -4,7 +4,6 @@
 
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import Any
 
 import bpy
 
@@ -14,8 +13,6 @@ from ...common.phrases import listed
 from ...scene.motion.action_curves import actions_of, moves_bones, moves_object_only, played_action, playing
 from ...scene.motion.nla_strips import strip_actions
 from ...scene.posing.rest_mesh_io import plays_actions
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -52,13 +49,13 @@ class MotionPlan:
 class MotionOptions:
     """How motion is carried over, for whatever class of Blender's inherits from it."""
 
-    action: _props.StringProperty(
+    action: bpy.props.StringProperty(
         name="Action",
         description="Name of the action to carry over, or a pattern such as Walk*; several with a semicolon "
         "between them. If empty, those that Actions says",
         options={"SKIP_SAVE"},
     )
-    actions: _props.EnumProperty(
+    actions: bpy.props.EnumProperty(
         name="Actions",
         description="Which actions of the source are carried over",
         items=[
@@ -67,7 +64,7 @@ class MotionOptions:
         ],
         default="ACTIVE",
     )
-    keying: _props.EnumProperty(
+    keying: bpy.props.EnumProperty(
         name="Keys",
         description="At which frames the new action gets keys",
         items=[
@@ -78,7 +75,7 @@ class MotionOptions:
         ],
         default="AUTO",
     )
-    tolerance: _props.FloatProperty(
+    tolerance: bpy.props.FloatProperty(
         name="Tolerance",
         description="By how much reduced keys may change a rotation",
         subtype="ANGLE",
@@ -86,31 +83,31 @@ class MotionOptions:
         max=0.5,
         default=0.0035,
     )
-    keep_feet: _props.BoolProperty(
+    keep_feet: bpy.props.BoolProperty(
         name="Feet on Ground",
         description="Where a foot stands in the source, let it stand in the target: the leg is bent for it. All "
         "frames are computed then",
     )
-    keep_hands: _props.BoolProperty(
+    keep_hands: bpy.props.BoolProperty(
         name="Hands on Body",
         description="Where a hand touches the body or the other hand in the source, bend the target's arm so that "
         "it does so too. All frames are computed then",
     )
-    stride: _props.FloatProperty(
+    stride: bpy.props.FloatProperty(
         name="Stride",
         description="How long the way along the ground is; 1 fits the length of the target's legs",
         min=0,
         soft_max=3,
         default=1,
     )
-    in_place: _props.BoolProperty(
+    in_place: bpy.props.BoolProperty(
         name="In Place", description="Take out the way from the first to the last frame, for walk cycles"
     )
-    strips: _props.BoolProperty(
+    strips: bpy.props.BoolProperty(
         name="NLA Strips",
         description="Carry the actions of the source's NLA strips over as well, and copy the strips",
     )
-    assign: _props.BoolProperty(
+    assign: bpy.props.BoolProperty(
         name="Play", description="Let the target play the new action, if it is one only", default=True
     )
 

@@ -3,14 +3,11 @@
 """Options of fitting an armature that stands in the source: Blender's properties, and the plain settings of them."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from ...common.access import view_layer_of
 from .plain_settings import settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -40,19 +37,19 @@ def _armatures(_owner: object, context: bpy.types.Context, _text: str) -> list[s
 class MyRigOptions:
     """The options of fitting such an armature, for whatever class of Blender's inherits from it."""
 
-    rig: _props.StringProperty(
+    rig: bpy.props.StringProperty(
         name="Rig",
         description="Name of an armature that stands in the source without moving it, such as a metarig of Rigify. "
         "It may be bound to nothing",
         search=_armatures,
         search_options={"SORT"},
     )
-    my_rig_bind: _props.BoolProperty(
+    my_rig_bind: bpy.props.BoolProperty(
         name="Bind with Weights",
         description="Bind the target to the fitted rig, with the weights of the source's own rig, handed to the "
         "bones that move the same surface. Leave it off for a metarig",
     )
-    my_rig_limit: _props.IntProperty(
+    my_rig_limit: bpy.props.IntProperty(
         name="Limit Bones",
         description="How many bones may move a vertex at most; 0 for any number",
         min=0,

@@ -20,8 +20,6 @@ from .shape_keys import ShapeKeyOptions, shape_key_settings
 from .uvs import UVOptions, uv_settings
 from .weights import WeightOptions, weight_settings
 
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
-
 KINDS: Final = {
     "use_rig": RigOptions,
     "use_weights": WeightOptions,
@@ -35,26 +33,26 @@ KINDS: Final = {
 class RetargetOptions(RigOptions, WeightOptions, ShapeKeyOptions, UVOptions, AttributeOptions):
     """Which kinds are carried over, and how."""
 
-    use_rig: _props.BoolProperty(
+    use_rig: bpy.props.BoolProperty(
         name="Rig",
         description="Give the target a copy of the source's armature, fitted into its body, and bind it. Left out "
         "if the source has none",
         default=True,
     )
-    use_weights: _props.BoolProperty(
+    use_weights: bpy.props.BoolProperty(
         name="Weights",
         description="Carry the source's vertex groups. Left out if it has none",
         default=True,
     )
-    use_shape_keys: _props.BoolProperty(
+    use_shape_keys: bpy.props.BoolProperty(
         name="Shape Keys",
         description="Carry the source's shape keys. Left out if it has none",
         default=True,
     )
-    use_uvs: _props.BoolProperty(
+    use_uvs: bpy.props.BoolProperty(
         name="UV Maps", description="Carry the source's UV maps. Left out if it has none", default=True
     )
-    use_attributes: _props.BoolProperty(
+    use_attributes: bpy.props.BoolProperty(
         name="Attributes",
         description="Carry color attributes, custom attributes, materials and marked edges",
     )

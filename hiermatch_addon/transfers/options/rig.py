@@ -3,13 +3,10 @@
 """Options of fitting a rig: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from .plain_settings import settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -46,7 +43,7 @@ class RigSettings:
 class RigOptions:
     """The options of fitting a rig, for whatever class of Blender's inherits from it."""
 
-    rig_existing: _props.EnumProperty(
+    rig_existing: bpy.props.EnumProperty(
         name="Existing Rig",
         description="What becomes of an armature that was made for the target before",
         items=[
@@ -55,19 +52,19 @@ class RigOptions:
         ],
         default="UPDATE",
     )
-    rig_replace: _props.BoolProperty(
+    rig_replace: bpy.props.BoolProperty(
         name="Replace Own Rig",
         description="If the target has a rig of its own already, switch its Armature modifiers off, and hide it if "
         "it moves nothing else; it is not deleted. Otherwise both move the target",
         default=True,
     )
-    rig_bind: _props.BoolProperty(
+    rig_bind: bpy.props.BoolProperty(
         name="Bind",
         description="Give the target an Armature modifier, set as the source's, and the armature as its parent if "
         "the source has its own as parent",
         default=True,
     )
-    rest_pose_like_source: _props.EnumProperty(
+    rest_pose_like_source: bpy.props.EnumProperty(
         name="Same Rest Pose",
         description="Whether to bring the target to the rest pose of the source, so that the source's actions play "
         "on it. How it stood is kept as an action",
@@ -78,16 +75,16 @@ class RigOptions:
         ],
         default="AUTO",
     )
-    rig_rest: _props.BoolProperty(
+    rig_rest: bpy.props.BoolProperty(
         name="Also Rest Pose",
         description="If the target is in another pose than the source, make an action that takes it to a rest pose "
         "like the source's",
     )
-    rig_rest_shown: _props.BoolProperty(
+    rig_rest_shown: bpy.props.BoolProperty(
         name="Show Rest Pose",
         description="Let the new armature take that rest pose at once",
     )
-    rig_pose: _props.EnumProperty(
+    rig_pose: bpy.props.EnumProperty(
         name="Pose",
         description="Whether the target is in another pose than the source, for the rest pose",
         items=[

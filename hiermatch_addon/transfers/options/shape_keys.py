@@ -3,14 +3,11 @@
 """Options of carrying shape keys: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from ....engine import Scaling
 from .plain_settings import names_in, settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -50,7 +47,7 @@ _SCALINGS: dict[str, Scaling] = {"AUTO": "auto", "NONE": "none", "OVERALL": "ove
 class ShapeKeyOptions:
     """The options of shape keys, for whatever class of Blender's inherits from it."""
 
-    key_choice: _props.EnumProperty(
+    key_choice: bpy.props.EnumProperty(
         name="Shape Keys",
         description="Which shape keys of the source are carried over",
         items=[
@@ -60,11 +57,11 @@ class ShapeKeyOptions:
         ],
         default="ALL",
     )
-    key_names: _props.StringProperty(
+    key_names: bpy.props.StringProperty(
         name="Names",
         description="Names of the shape keys to carry over, separated by commas",
     )
-    key_existing: _props.EnumProperty(
+    key_existing: bpy.props.EnumProperty(
         name="Existing Keys",
         description="What becomes of shape keys of the same name that the target has already",
         items=[
@@ -73,7 +70,7 @@ class ShapeKeyOptions:
         ],
         default="REPLACE",
     )
-    key_scaling: _props.EnumProperty(
+    key_scaling: bpy.props.EnumProperty(
         name="Scale",
         description="What becomes of the size of the movements",
         items=[
@@ -88,7 +85,7 @@ class ShapeKeyOptions:
         ],
         default="AUTO",
     )
-    key_threshold: _props.FloatProperty(
+    key_threshold: bpy.props.FloatProperty(
         name="Threshold",
         description="Movements shorter than this part of the longest of a shape key are dropped, so that vertices "
         "far from what it moves stay exactly in place",
@@ -98,13 +95,13 @@ class ShapeKeyOptions:
         precision=4,
         subtype="FACTOR",
     )
-    key_drivers: _props.BoolProperty(
+    key_drivers: bpy.props.BoolProperty(
         name="Drivers",
         description="Copy the drivers of the shape keys. Where they point to the source or its armature, the "
         "copies point to the target and its armature",
         default=True,
     )
-    key_action: _props.BoolProperty(
+    key_action: bpy.props.BoolProperty(
         name="Action",
         description="Let the target's shape keys play the action of the source's, unless they have one of their "
         "own. Both share it",

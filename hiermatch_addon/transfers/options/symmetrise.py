@@ -3,13 +3,10 @@
 """Options of making a mesh symmetric: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from .plain_settings import settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class SymmetriseSettings:
 class SymmetriseOptions:
     """The options of symmetrising, for whatever class of Blender's inherits from it."""
 
-    symmetrise_side: _props.EnumProperty(
+    symmetrise_side: bpy.props.EnumProperty(
         name="Direction",
         description="Which side is taken to the other. The sides are told apart by vertex groups with names such "
         "as Arm.L and Arm.R, or else by the object's X axis, which points to the left",
@@ -46,14 +43,16 @@ class SymmetriseOptions:
         ],
         default="LEFT",
     )
-    symmetrise_weights: _props.BoolProperty(
+    symmetrise_weights: bpy.props.BoolProperty(
         name="Weights",
         description="Make the weights of vertex groups symmetric; locked groups are left alone",
         default=True,
     )
-    symmetrise_keys: _props.BoolProperty(name="Shape Keys", description="Make shape keys symmetric", default=True)
-    symmetrise_colors: _props.BoolProperty(name="Colors", description="Make color attributes symmetric", default=True)
-    symmetrise_create: _props.BoolProperty(
+    symmetrise_keys: bpy.props.BoolProperty(name="Shape Keys", description="Make shape keys symmetric", default=True)
+    symmetrise_colors: bpy.props.BoolProperty(
+        name="Colors", description="Make color attributes symmetric", default=True
+    )
+    symmetrise_create: bpy.props.BoolProperty(
         name="Create Missing Sides",
         description="Add vertex groups and shape keys of the other side where only one side is there",
         default=True,

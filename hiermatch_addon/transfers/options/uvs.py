@@ -3,13 +3,10 @@
 """Options of carrying UV layers: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from .plain_settings import names_in, settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -34,7 +31,7 @@ class UVSettings:
 class UVOptions:
     """The options of UV layers, for whatever class of Blender's inherits from it."""
 
-    uv_layers: _props.EnumProperty(
+    uv_layers: bpy.props.EnumProperty(
         name="UV Maps",
         description="Which UV maps of the source are carried over. Those of the same name are replaced",
         items=[
@@ -44,11 +41,11 @@ class UVOptions:
         ],
         default="ALL",
     )
-    uv_names: _props.StringProperty(
+    uv_names: bpy.props.StringProperty(
         name="Names",
         description="Names of the UV maps to carry over, separated by commas",
     )
-    uv_seams: _props.BoolProperty(
+    uv_seams: bpy.props.BoolProperty(
         name="Mark Seams",
         description="Mark the edges between the islands of the active UV map as seams on the target, instead of "
         "the seams that it has",

@@ -3,13 +3,10 @@
 """Options of fitting clothes: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from .plain_settings import settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 FITS = [
     ("AUTO", "Automatic", "Close to the skin it follows each form of it, far from it only the body as a whole"),
@@ -24,8 +21,8 @@ FITS = [
 class HIERMATCH_PG_worn(bpy.types.PropertyGroup):
     """How an item is fitted to other bodies; it is kept on the item, and so goes along with it."""
 
-    fit: _props.EnumProperty(name="Fit", description="How the item follows the body", items=FITS, default="AUTO")
-    find_rigid: _props.BoolProperty(
+    fit: bpy.props.EnumProperty(name="Fit", description="How the item follows the body", items=FITS, default="AUTO")
+    find_rigid: bpy.props.BoolProperty(
         name="Find Rigid Parts",
         description="Keep small solid parts as they are, such as buttons, buckles and glasses. Others can be named by "
         'a vertex group called "Rigid"',
@@ -79,7 +76,7 @@ class WearSettings:
 class WearOptions:
     """The options of clothes, for whatever class of Blender's inherits from it."""
 
-    wear_result: _props.EnumProperty(
+    wear_result: bpy.props.EnumProperty(
         name="Result",
         description="What is made",
         items=[
@@ -88,7 +85,7 @@ class WearOptions:
         ],
         default="OBJECT",
     )
-    wear_clearance: _props.FloatProperty(
+    wear_clearance: bpy.props.FloatProperty(
         name="Clearance",
         description="Least distance from the skin. With 0 it is what the items had on their own body, in the size "
         "of the other",
@@ -98,7 +95,7 @@ class WearOptions:
         precision=4,
         subtype="DISTANCE",
     )
-    wear_weights: _props.EnumProperty(
+    wear_weights: bpy.props.EnumProperty(
         name="Weights",
         description="Which weights the fitted items get",
         items=[
@@ -108,37 +105,37 @@ class WearOptions:
         ],
         default="AUTO",
     )
-    wear_limit: _props.IntProperty(
+    wear_limit: bpy.props.IntProperty(
         name="Limit",
         description="How many bones may move a vertex: the smallest weights go. 0 for any number",
         default=0,
         min=0,
         max=32,
     )
-    wear_normalise: _props.BoolProperty(
+    wear_normalise: bpy.props.BoolProperty(
         name="Normalize",
         description="Let the weights of all bones sum to one at each vertex. Locked groups keep theirs",
         default=True,
     )
-    wear_poses: _props.BoolProperty(
+    wear_poses: bpy.props.BoolProperty(
         name="Mend in Poses",
         description="Bend each joint of the other body's rig, and where its skin pokes through an item then, bring "
         "the weights there closer to those of the skin, and lift the item a little",
         default=True,
     )
-    wear_keys: _props.BoolProperty(
+    wear_keys: bpy.props.BoolProperty(
         name="Follow Shape Keys",
         description="Give the fitted items the other body's shape keys that move it below them, driven by its own: "
         "they follow a wide belly or a squat",
         default=True,
     )
-    wear_fit_rig: _props.BoolProperty(
+    wear_fit_rig: bpy.props.BoolProperty(
         name="Fit Rig",
         description="If the other body has no armature, give it that of the first, with its weights, as Retarget "
         "does, so that body and clothes move",
         default=True,
     )
-    wear_hide: _props.EnumProperty(
+    wear_hide: bpy.props.EnumProperty(
         name="Body Below",
         description="What becomes of the body where clothes cover it",
         items=[
@@ -148,7 +145,7 @@ class WearOptions:
         ],
         default="NONE",
     )
-    wear_colors: _props.BoolProperty(
+    wear_colors: bpy.props.BoolProperty(
         name="Show Fit",
         description="Write color attributes that show how far each vertex is from the skin, how far it was pushed, "
         "and where it is uncertain",

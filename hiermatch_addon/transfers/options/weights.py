@@ -3,13 +3,10 @@
 """Options of carrying weights: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from .plain_settings import settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -62,7 +59,7 @@ class WeightSettings:
 class WeightOptions:
     """The options of weights, for whatever class of Blender's inherits from it."""
 
-    weight_groups: _props.EnumProperty(
+    weight_groups: bpy.props.EnumProperty(
         name="Vertex Groups",
         description="Which vertex groups of the source are carried over. Those that a match wrote never are",
         items=[
@@ -73,7 +70,7 @@ class WeightOptions:
         ],
         default="ALL",
     )
-    weight_mode: _props.EnumProperty(
+    weight_mode: bpy.props.EnumProperty(
         name="Mode",
         description="What becomes of the weights that the target has in these groups",
         items=[
@@ -82,7 +79,7 @@ class WeightOptions:
         ],
         default="REPLACE",
     )
-    weight_mix: _props.FloatProperty(
+    weight_mix: bpy.props.FloatProperty(
         name="Mix Factor",
         description="How much the carried weights count against those that are there",
         default=1.0,
@@ -90,13 +87,13 @@ class WeightOptions:
         max=1.0,
         subtype="FACTOR",
     )
-    weight_normalise: _props.BoolProperty(
+    weight_normalise: bpy.props.BoolProperty(
         name="Normalize",
         description="Let the weights of all bones sum to one at each vertex. Locked groups keep theirs. If only "
         "some groups are carried, the others of the target give way to them",
         default=True,
     )
-    weight_limit: _props.IntProperty(
+    weight_limit: bpy.props.IntProperty(
         name="Limit",
         description="How many bones may move a vertex: the smallest weights go, and fade before they do. 0 for any "
         "number",
@@ -104,7 +101,7 @@ class WeightOptions:
         min=0,
         max=32,
     )
-    weight_clean: _props.FloatProperty(
+    weight_clean: bpy.props.FloatProperty(
         name="Clean",
         description="Weights below this are dropped, but for the largest of each vertex",
         default=0.001,
@@ -112,13 +109,13 @@ class WeightOptions:
         max=0.5,
         precision=3,
     )
-    weight_fill: _props.BoolProperty(
+    weight_fill: bpy.props.BoolProperty(
         name="Fill",
         description="Where the map tears vertices away from their neighbors, take the weights from around them "
         "along the surface",
         default=True,
     )
-    weight_alone: _props.EnumProperty(
+    weight_alone: bpy.props.EnumProperty(
         name="No Counterpart",
         description="What vertices get that have no counterpart on the source, as Show > Overlap tells: where the "
         "target shows more of a body than the source",
@@ -129,19 +126,19 @@ class WeightOptions:
         ],
         default="MAP",
     )
-    weight_rigid: _props.BoolProperty(
+    weight_rigid: bpy.props.BoolProperty(
         name="Rigid Pieces",
         description="Let loose pieces move as one, such as eyes, teeth, buckles and plates, if what they "
         "correspond to does on the source",
         default=True,
     )
-    weight_rigid_group: _props.StringProperty(
+    weight_rigid_group: bpy.props.StringProperty(
         name="Rigid Group",
         description="Vertex group of the target for single pieces: a loose piece with vertices of weight 1 in it "
         "moves by one bone, one with vertices of weight 0 never moves as one, whatever the source does",
         default="Rigid",
     )
-    weight_mark: _props.BoolProperty(
+    weight_mark: bpy.props.BoolProperty(
         name="Mark Rejected",
         description="Write a color attribute that shows in red which vertices were torn away from their neighbors, "
         "so that their own weights were rejected",

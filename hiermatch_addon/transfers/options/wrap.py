@@ -3,13 +3,10 @@
 """Options of wrapping one mesh onto another: Blender's properties, and the plain settings that they make."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 
 from .plain_settings import settings_of
-
-_props: Any = bpy.props  # whose functions Blender's stubs declare to return nothing
 
 
 @dataclass(frozen=True)
@@ -37,7 +34,7 @@ class WrapSettings:
 class WrapOptions:
     """The options of wrapping, for whatever class of Blender's inherits from it."""
 
-    wrap_moved: _props.EnumProperty(
+    wrap_moved: bpy.props.EnumProperty(
         name="Wrap",
         description="Whose surface is laid onto the other",
         items=[
@@ -46,7 +43,7 @@ class WrapOptions:
         ],
         default="SOURCE",
     )
-    wrap_result: _props.EnumProperty(
+    wrap_result: bpy.props.EnumProperty(
         name="Result",
         description="What is made",
         items=[
@@ -55,7 +52,7 @@ class WrapOptions:
         ],
         default="KEY",
     )
-    wrap_place: _props.EnumProperty(
+    wrap_place: bpy.props.EnumProperty(
         name="Place",
         description="Where the wrapped shape stands",
         items=[
@@ -64,7 +61,7 @@ class WrapOptions:
         ],
         default="OTHER",
     )
-    wrap_in_betweens: _props.IntProperty(
+    wrap_in_betweens: bpy.props.IntProperty(
         name="In-Betweens",
         description="How many shape keys are added that keep limbs from shrinking on the way. They follow the "
         "slider of the first by drivers",

@@ -150,11 +150,7 @@ class ItemMotion:
 
     def _weight_steps(self, passage: Passage, rig: SourceRig) -> Steps[None]:
         """Find the weights of all items."""
-        there = passage.pair.source_to_target
-        spread = csr_array(
-            (there.barycentric.ravel(), there.corners.ravel(), np.arange(0, 3 * len(there) + 1, 3)),
-            shape=(len(there), there.image_vertex_count),
-        )
+        spread = passage.pair.source_to_target.interpolation
         lying = [(fitted.positions, csr_array(fitted.places @ spread)) for fitted in self.fitted]
         shares = yield from within(shares_below_steps(lying, passage.pair.target), 0.0, 0.1)
         skins = [csr_array(each @ rig.weights) for each in shares]

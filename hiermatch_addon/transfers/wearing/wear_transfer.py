@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ....engine import ClosestPoints, TriangleMesh, kept_in_place, wear_steps, within, wrap_steps
+from ....engine import ClosestPoints, TriangleMesh, nearest_similarity, wear_steps, within, wrap_steps
 from ...common.access import view_layer_of
 from ...common.errors import NothingToCarryError, ObjectError
 from ...common.phrases import counted, listed
@@ -76,7 +76,7 @@ class WearTransfer(Transfer):
         self._keys: BodyKeys | None = None
         self._moved = (np.zeros((0, 3)), np.zeros((0, 3)))
         self._fitted: list[FittedItem] = []
-        self._motion: NDArray[np.float64] = np.eye(4)
+        self._motion: NDArray[np.float64] = np.eye(4)  # how the body turns and moves on the whole
         self._notes: list[str] = []
         self._ends: list[str] = []
 
@@ -174,7 +174,8 @@ class WearTransfer(Transfer):
             registered, start = wrapped.positions, start + 0.3
         pair, registered = _as_seen(pair, registered, *self._moved)
         passage = replace(passage, pair=pair)
-        self._motion = _overall_motion(pair.source, registered)
+        turn = nearest_similarity(pair.source.vertices, registered, pair.source.vertex_areas, scale=1.0)
+        self._motion[:3, :3], self._motion[:3, 3] = turn
         self._fitted = [cast("Any", None)] * len(self._items)
         bones = None if self._rig is None else self._rig.weights
         share = (0.9 - start) / len(self._bodies)
@@ -283,17 +284,3 @@ def _as_seen(
         moved = at_target[target.triangles[found.triangles]]
         images = images + np.einsum("kc,kci->ki", found.barycentric, moved)
     return replace(pair, source=moved_mesh(pair.source, at_source), target=moved_mesh(target, at_target)), images
-
-
-def _overall_motion(source: TriangleMesh, images: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Find how the body turns and moves on the whole."""
-    turned_back = kept_in_place(source, images)
-    weights = source.vertex_areas / source.area
-    centre, back = weights @ images, weights @ turned_back
-    x, y = turned_back - back, images - centre
-    left, _, right = np.linalg.svd(y.T @ (weights[:, None] * x))
-    left[:, 2] *= np.sign(np.linalg.det(left @ right))
-    motion = np.eye(4)
-    motion[:3, :3] = left @ right
-    motion[:3, 3] = centre - motion[:3, :3] @ (weights @ source.vertices)
-    return motion
