@@ -12,9 +12,11 @@ from typing import Any, Final, cast, get_type_hints
 
 import bpy
 
-from . import ja_JP, zh_HANS
+from .messages import LOCALES, MESSAGES
 
-LANGUAGES: Final = {"ja_JP": ja_JP.MESSAGES, "zh_HANS": zh_HANS.MESSAGES}
+LANGUAGES: Final = {
+    locale: {text: said[number] for text, said in MESSAGES.items()} for number, locale in enumerate(LOCALES)
+}
 """For each of Blender's names of a language the translation of each English text."""
 
 CONTEXT: Final = "HierMatch"
