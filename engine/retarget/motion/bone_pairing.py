@@ -435,7 +435,8 @@ def _swung(rotations: Floats, ends: tuple[Ints, Ints], trees: tuple[Skeleton, Sk
 def _by_joints(ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], upright: Floats) -> Floats:
     """Rotations (k, 3, 3) of the pairs by their joints alone: limbs are bent against the body, but not twisted.
 
-    Where no joint or several follow, a bone rests against the body, or the limb that it ends, as its partner does.
+    Where several joints follow, a bone rests against the body as its partner does; where none follows, it does so
+    against what it hangs on.
     """
     parts = Segments.of(*ends, *trees)
     turned = np.tile(upright, (len(ends[0]), 1, 1))
@@ -444,7 +445,7 @@ def _by_joints(ends: tuple[Ints, Ints], trees: tuple[Skeleton, Skeleton], uprigh
         if len(below) == 1:
             start, goal = unit_vectors(_begins(parts, below[0], trees) - _begins(parts, part, trees))
             turned[parts.rows[part]] = least_turns(upright @ start, goal) @ upright
-        elif not len(below) and above >= 0 and len(parts.below(above)) == 1:
+        elif not len(below) and above >= 0:
             turned[parts.rows[part]] = turned[parts.rows[above][0]]
     return turned
 

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, SurfaceMap, SurfacePoints, TriangleMesh
-from engine.matching.covered_parts import best_and_rivals, continued, covered_parts_steps
+from engine.matching.covered_parts import _Fitter, best_and_rivals, continued, covered_parts_steps
 from engine.runtime.progress import run
 from tests.shapes import compacted, creature, cylinder
 
@@ -41,6 +41,20 @@ def test_what_the_part_shows_is_found_without_a_hint(bodies):
     covered = found[0].covered
     assert areas @ (covered & true) > 0.85 * (areas @ (covered | true))
     assert found[0].is_new
+    for number, piece in enumerate(found):  # none is much the same as a better one
+        for other in found[:number]:
+            assert areas @ (piece.covered & other.covered) < 0.8 * (areas @ (piece.covered | other.covered))
+
+
+def test_what_two_pieces_have_in_common_is_seen_by_their_areas():
+    tube = Shape(TriangleMesh(*cylinder(24, 40, 0.2, 2.0)))
+    fitter, heights = _Fitter(tube, tube), tube.mesh.vertices[:, 2] - tube.mesh.vertices[:, 2].min()
+    everything, nothing, half = heights < 3, heights < 0, heights < 1
+    assert fitter.common_part(everything, everything) == pytest.approx(1)
+    assert fitter.common_part(half, everything) == pytest.approx(1 / 2, abs=0.03)
+    assert fitter.common_part((heights > 0.5) & (heights < 1.5), half) == pytest.approx(1 / 3, abs=0.03)
+    assert fitter.common_part(half, ~half) == 0
+    assert fitter.common_part(nothing, half) == fitter.common_part(nothing, nothing) == 0
 
 
 def true_map(rest, image, image_rest):

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from engine import Shape, TriangleMesh
-from engine.matching.partial_placement import part_placements_steps
+from engine.matching.partial_placement import _Carrier, part_placements_steps
 from engine.runtime.progress import run
 from tests.shapes import compacted, creature
 
@@ -57,3 +57,23 @@ def test_size_and_place_of_either_do_not_matter(bodies):
     moved = sampled(1000 * mesh.vertices + [5.0, -3.0, 100.0], mesh.triangles)
     found = run(part_placements_steps(whole[0], moved, 1))[0]
     np.testing.assert_array_equal(found, expected)
+
+
+def test_of_each_size_many_matchings_are_carried_over_that_differ_in_units_of_the_part(bodies, monkeypatch):
+    """Variations of the best few would leave no room for others."""
+    tried: dict[float, list[np.ndarray]] = {}
+    carried = _Carrier.carried
+
+    def noted(self, images, unit):
+        tried.setdefault(unit, []).append(images)
+        return carried(self, images, unit)
+
+    monkeypatch.setattr(_Carrier, "carried", noted)
+    (whole, _), (part, _) = bodies
+    run(part_placements_steps(whole, part, 1))
+    distances = whole.samples.distances
+    assert min(tried) < 0.6 < max(tried) == 1
+    for unit, found in tried.items():
+        assert len(found) > 20
+        apart = [distances[one, other].mean() for number, one in enumerate(found) for other in found[:number]]
+        assert 0.05 * unit < min(apart) < 0.13 * unit

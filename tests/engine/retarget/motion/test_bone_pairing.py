@@ -9,6 +9,7 @@ from scipy.sparse import csr_array
 
 from engine import BonePairing, RigError, Skeleton, SurfaceMap, TriangleMesh, fit_rig, pair_bones
 from engine.mesh.reflection import reflected_mesh
+from engine.retarget.motion.bone_pairing import _by_joints
 from tests.people import HANGING, Person, at_rest_in, coarse_rig, fine_rig, haunched_rig, person, renamed
 from tests.shapes import rotation
 
@@ -193,3 +194,23 @@ def test_what_does_not_fit_together_is_refused(someone, paired):
 def test_nothing_is_paired_across_a_map_to_the_mirror_image(someone, paired):
     with pytest.raises(RigError, match="exchanges left and right"):
         paired(Person(reflected_mesh(someone.mesh), someone.rig), someone.rig)
+
+
+def test_by_joints_alone_a_bone_points_to_the_one_that_follows_and_where_several_do_it_rests_as_the_body_does():
+    """A back, a chest with two arms and a neck, and hands that end the arms."""
+    heads = np.array([[0.0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 1], [-1, 0, 1], [-2, 0, 1], [0, 0, 2]])
+    parents = np.array([-1, 0, 1, 2, 1, 4, 1])
+    source = Skeleton(parents, heads, heads)
+    other = heads + np.array([[0, 0, 0], [0, 0.5, 0], [0, 1, 0], [0, 2, 0], [0, 0, 1], [0, 0, 2], [0, 1, 0]])
+    turn = rotation([0, 0, 1], np.pi / 2)
+    target = Skeleton(parents, other @ turn.T, other @ turn.T)
+    numbers = np.arange(7)
+    turned = _by_joints((numbers, numbers), (source, target), turn)
+    for bone, after in ((0, 1), (2, 3), (4, 5)):
+        ways = [tree.heads[after] - tree.heads[bone] for tree in (source, target)]
+        ways = [way / np.linalg.norm(way) for way in ways]
+        assert np.allclose(turned[bone] @ ways[0], ways[1])
+        assert not np.allclose(turned[bone], turn, atol=0.1)
+    assert np.allclose(turned[[1, 6]], turn)
+    assert np.allclose(turned[[3, 5]], turned[[2, 4]])
+    assert np.allclose(np.linalg.det(turned), 1)

@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from engine import Skeleton
+from engine.retarget.motion import chain_fit
 from engine.retarget.motion.bone_pairing import BonePairing
 from engine.retarget.motion.chain_fit import fitted_chains
 from engine.retarget.motion.limbs import limbs_of
@@ -194,3 +195,40 @@ def test_an_arm_is_bent_at_the_elbow_wherever_the_map_puts_that():
     bent, loose = (turned(paired(pairs, range(5), source, target, arms=arms), turns, 5) for arms in (True, False))
     assert np.allclose(bent, turns[:, pairs])
     assert not np.allclose(loose, bent)
+
+
+def test_what_hangs_on_a_chain_weighs_as_much_in_one_bone_as_in_several_side_by_side():
+    """Such as the one bone of a mitten, or two that are half as long."""
+    source, heights = column([0, 1, 2, 3]), [0, 0.6, 1.2, 2]
+    chain, pairs, turns = column(heights), ([0, 0, 1], [0, 1, 2]), bends(11, 6, 3, 0.6)
+    found = []
+    for count in (1, 2, 3):
+        parents = np.append(chain.parents, [2] * count)
+        heads, tails = (
+            np.concatenate([own, [end * UP] * count]) for own, end in ((chain.heads, 2), (chain.tails, 2 + 1 / count))
+        )
+        target = Skeleton(parents, heads, tails)
+        both = [*pairs[0], *[2] * count], [*pairs[1], *range(3, 3 + count)]
+        found.append(turned(paired(*both, source, target), turns, len(target))[:, :3])
+    assert not np.allclose(found[0], turns[:, [0, 0, 1]], atol=1e-3)
+    assert np.allclose(found[1], found[0])
+    assert np.allclose(found[2], found[0])
+
+
+def test_what_hangs_on_a_chain_weighs_as_much_in_one_bone_as_in_a_row():
+    """Such as a hand with a finger, or one that is as long as both."""
+    joints, pairs, turns = [0, 0.6, 1.2, 2], ([0, 0, 1, 2], [0, 1, 2, 3]), bends(12, 6, 4, 0.6)
+    source, short, long = column([0, 1, 2, 2.5, 3]), column([*joints, 2.5, 3]), column([*joints, 3])
+    row = turned(paired([*pairs[0], 3], [*pairs[1], 4], source, short), turns, 5)[:, :3]
+    assert np.allclose(turned(paired(*pairs, source, long), turns, 4)[:, :3], row)
+    light = turned(paired(*pairs, source, short), turns, 5)[:, :3]  # the finger has no partner
+    assert not np.allclose(light, row, atol=1e-3)
+
+
+def test_the_bones_of_a_chain_have_come_to_rest(monkeypatch):
+    source, target, turns = column([0, 1, 2, 3, 4]), column([0, 0.6, 1.2, 1.8, 2.4, 3, 4]), bends(13, 6, 4, 0.6)
+    chains = paired([0, 0, 1, 2, 2, 3], range(6), source, target)
+    found = turned(chains, turns, 6)
+    monkeypatch.setattr(chain_fit, "_ROUNDS", 200)
+    ends = [posed(target, each)[0] for each in (found, turned(chains, turns, 6))]
+    assert np.linalg.norm(ends[1] - ends[0], axis=2).max() < 0.005 * 4

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from engine import BonePairing, Motion, MotionSettings, RigError, Skeleton, transfer_motion
+from engine.retarget.motion.motion_transfer import _smoothed
 from tests.people import HANGING, at_rest_in, coarse_rig, fine_rig, moved, renamed, skinned, walk
 from tests.shapes import rotation
 
@@ -298,3 +299,21 @@ def test_each_foot_stands_at_its_own_height():
     assert np.ptp(wanted) > 0.05
     assert np.ptp(free.motion.tails[:, toes, 2] - wanted, axis=1).min() > 0.1
     assert np.abs(held.motion.tails[:, toes, 2] - wanted).max() < 0.01
+
+
+@pytest.mark.parametrize("rate", [24.0, 60.0, 240.0])
+def test_the_body_goes_down_before_a_leg_is_too_short_and_not_at_once(rate):
+    """A tenth of a second before it has to be down it begins to, and not more than two."""
+    times = np.arange(round(3 * rate)) / rate
+    drops = np.where(abs(times - 1.5) < 0.01, 1.0, 0.0)
+    lower = _smoothed(drops, rate)
+    assert (lower >= drops - 1e-9).all()
+    assert abs(np.diff(lower)).max() < 1.1 / (0.2 * rate)
+    assert np.allclose(lower[abs(times - 1.5) > 0.25], 0)
+    assert (lower[abs(times - 1.5) < 0.1] > 0.4).all()
+
+
+def test_where_the_body_has_to_be_lower_all_the_time_it_is_so_from_the_first_pose_to_the_last():
+    assert np.allclose(_smoothed(np.full(10, 0.3), 24.0), 0.3)
+    falling = np.linspace(1, 0, 48)
+    assert (_smoothed(falling, 24.0) >= falling - 1e-9).all()

@@ -10,7 +10,7 @@ from engine import MatchError, SurfaceMap, TriangleMesh, run
 from engine.mesh.connectivity.edge_chains import edge_chains
 from engine.retarget.values.edge_tracing import nearest_edge_values, trace_edges_steps
 from tests.faces import closest_map, grid, triangulated
-from tests.shapes import icosphere, plane, rotation
+from tests.shapes import icosphere, plane, plane_with_hole, rotation
 
 
 def trace(source, marked, values, target):
@@ -172,3 +172,39 @@ def test_nothing_marked_and_what_does_not_fit():
         run(trace_edges_steps(nothing, [], other, mesh.edges, **maps))
     with pytest.raises(MatchError, match="do not belong together"):
         run(trace_edges_steps(nothing, [], mesh, other.edges, **maps))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_each_edge_has_the_value_of_the_marked_edge_beside_its_middle(seed):
+    """Where values change along a line of long and short edges, and the target's edges are not all of one length."""
+    random = np.random.default_rng(seed)
+    spots = np.append(0, np.cumsum(random.uniform(0.6, 1.4, 12)))
+    bounds = np.array([0, 3.3, 3.9, 8.6, spots[-1]])
+
+    def strip(along):
+        """Mesh a strip around the x axis with vertices there at some places."""
+        vertices = np.concatenate([np.c_[along, np.full(len(along), y), np.zeros(len(along))] for y in (-1, 0, 1)])
+        first = np.add.outer(len(along) * np.arange(2), np.arange(len(along) - 1)).ravel()
+        second = first + len(along)
+        triangles = np.concatenate([np.c_[first, first + 1, second], np.c_[first + 1, second + 1, second]])
+        return TriangleMesh(vertices, triangles)
+
+    source, target = strip(bounds), strip(spots)
+    marked = on_line(source, [0, 1, 0], 0.0)
+    order = source.vertices[marked].mean(axis=1)[:, 0].argsort()
+    traced = trace(source, marked[order], np.array([1.0, 2, 3, 4]), target).values
+    along = on_line(target, [0, 1, 0], 0.0)
+    middles = target.vertices[target.edges].mean(axis=1)
+    found = abs(middles[:, 1]) < 1e-9
+    assert len(along) == found.sum() == (traced > 0).sum()
+    apart = abs(middles[found, 0, None] - bounds[1:-1]).min(axis=1)
+    clear = apart > 0.13  # an eighth of an edge
+    assert (traced[found] == np.searchsorted(bounds, middles[found, 0]))[clear].all()
+
+
+def test_a_line_goes_around_a_hole_of_the_target_however_wide():
+    source, target = TriangleMesh(*plane(21)), TriangleMesh(*plane_with_hole(40, 0.3, 0.6))
+    marked = on_line(source, [1, 0, 0], 0.45)
+    edges = target.edges[trace(source, marked, np.ones(len(marked)), target).values > 0]
+    assert degrees(edges) == [1, 1] + [2] * (len(edges) - 1)
+    assert length(target, edges) == pytest.approx(1 + 2 * 0.15)
