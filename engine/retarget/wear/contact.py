@@ -163,7 +163,7 @@ class _Sewn:
 
 
 def surface_samples(mesh: TriangleMesh, spacing: float) -> tuple[csr_array, Ints]:
-    """Spread points over a surface: all its vertices, and grids in triangles whose sides are longer than a spacing.
+    """Spread points over a surface: its vertices, middles of triangles, and grids in those with sides of two spacings.
 
     Returns
     -------
