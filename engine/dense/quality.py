@@ -281,7 +281,7 @@ def overlap_sentence(shares: tuple[float, float], *, credible: bool) -> str:
     """Say what part of the source and of the target is shared, and whether that can be relied on."""
     if not credible:
         return "It is not clear what the shapes share: do not trust the map; add landmarks, or cut them alike."
-    if max(shares) >= _NEARLY_WHOLE:
+    if max(shares) >= _NEARLY_WHOLE and min(shares) < _WHOLE:
         return _missing(*shares)
     return f"The shapes overlap: {shares[0]:.0%} of the source and {shares[1]:.0%} of the target have a partner."
 

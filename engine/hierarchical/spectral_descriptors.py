@@ -29,7 +29,7 @@ def heat_kernel_signatures(spectrum: Spectrum, times: Floats = _TIMES) -> Floats
     Parameters
     ----------
     spectrum : Spectrum
-        Eigenpairs of the surface; hundred are enough for the usual times.
+        Eigenpairs of the surface; a hundred are enough for the usual times.
     times : (d,) array of float
         Times in units of the surface's area; by default the same for all shapes, evenly spaced on a logarithmic scale.
 

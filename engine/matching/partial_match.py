@@ -198,10 +198,11 @@ def part_matched_steps(
     pairs = [PartialPair(x, y, of_source=True)] if parts[1] or not any(parts) else []
     pairs += [PartialPair(x, y, of_source=False)] if parts[0] or not any(parts) else []
     closer: dict[PartialPair, MatchResult] = {}
-    for pair in pairs:
+    for number, pair in enumerate(pairs):
         # With landmarks nothing says how much alike a piece is.
         if task.landmarks is None and pair.shows_all(result):
-            closer[pair] = yield from within(known_piece_matched_steps(result, pair, task), 0.0, _BEGUN)
+            beginning = known_piece_matched_steps(result, pair, task)
+            closer[pair] = yield from within(beginning, *part_of(number, len(pairs), 0.0, _BEGUN))
             if pair.is_clear(closer[pair], result, is_sure=is_sure):
                 return closer[pair]
     # Of a closed body, some piece is always more like a ball than all of it.

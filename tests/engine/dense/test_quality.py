@@ -119,6 +119,7 @@ def test_a_half_that_is_not_reached_is_told(square):
 def test_a_small_part_that_the_other_lacks_does_not_sound_like_a_failure():
     sentence = overlap_sentence((1.0, 0.989), credible=True)
     assert sentence == "The shapes correspond, but for a small part of the target (1.1%) that the other lacks."
+    assert "100% of the source and 100% of the target" in overlap_sentence((1.0, 0.999), credible=True)
     assert "of the source (1.5%)" in overlap_sentence((0.985, 0.99), credible=True)
     assert overlap_sentence((0.97, 1.0), credible=True).startswith("Only 97% of the source has a partner")
 

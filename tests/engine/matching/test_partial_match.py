@@ -2,6 +2,7 @@
 """Matches of bodies with parts of others: busts, halves, and what a scanner did not see."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from engine.matching.covered_parts import CoveredPart
 from engine.matching.partial_match import PartialPair, agreed_part_steps, part_matched_steps, piece_matched_steps
 from engine.matching.refinement import refine_map
 from engine.matching.shape_matching import MatchTask, matched_steps
-from engine.runtime.progress import run
+from engine.runtime.progress import Progress, run
 from tests.shapes import compacted, creature, permuted, rotation
 
 QUICK = MatchSettings(points=12, samples=100, hypotheses=2)
@@ -270,3 +271,22 @@ def test_another_correspondence_is_extended_over_what_the_half_shows(result, who
     dense = densify(whole[0], half[0], result.source_points, result.target_points, maps=maps)
     assert np.mean(errors(dense.target_to_source, half[1], whole[1])) < 0.02
     assert (dense.source_to_target.confidence[whole[1][:, 0] < -0.15] == 0).mean() > 0.95
+
+
+def test_progress_never_goes_back_where_nothing_says_which_surface_is_the_part(monkeypatch):
+    """Both ways round are tried, one after the other."""
+    quality = SimpleNamespace(likeness=0.0, confidence=0.0, coverage=1.0, source_coverage=1.0)
+    known = SimpleNamespace(dense=SimpleNamespace(quality=quality))
+
+    def working(answer):
+        """A computation of two steps."""
+        yield from (Progress(0.0, "Working"), Progress(1.0, "Working"))
+        return answer
+
+    monkeypatch.setattr(partial_match, "has_border", lambda _: False)
+    monkeypatch.setattr(partial_match, "known_piece_matched_steps", lambda *_: working(known))
+    monkeypatch.setattr(partial_match, "_pieces_steps", lambda *_: working([]))
+    task = SimpleNamespace(landmarks=None, clock=SimpleNamespace(lap=lambda _: None))
+    fractions = [progress.fraction for progress in part_matched_steps(known, None, None, task)]
+    assert len(fractions) == 8
+    assert fractions == sorted(fractions)
