@@ -297,8 +297,8 @@ def _result(
 
     def exact(points: SurfacePoints) -> SurfacePoints:
         """Put the landmarks among points at the very vertices that were given."""
-        rows = np.arange(min(known, len(points)))
-        return placed_at_vertices(points, y.original, rows, target_vertices[rows]) if known else points
+        first = np.arange(min(known, len(points)))
+        return placed_at_vertices(points, y.original, first, target_vertices[first]) if known else points
 
     return MatchResult(
         source_points=SurfacePoints.at_vertices(x.original, source_vertices[:count]),
