@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 class SidebarPanel:
     """Where the panels are; to be inherited from before `bpy.types.Panel`."""
 
-    bl_space_type: Any = "VIEW_3D"
-    bl_region_type: Any = "UI"
+    bl_space_type = cast("Any", "VIEW_3D")
+    bl_region_type = cast("Any", "UI")
     bl_category = "HierMatch"
 
 
