@@ -7,14 +7,14 @@ FOLDER holds the files of `CASES`.  Characters are taken apart: what is named th
 body, which has no skin below most of them.  Everything goes through import and the button *Wear*.
 
 A row holds the confidence of the match in %; what part of the skin below the items shows through them, by area, in %:
-at rest, in the mean of three poses, in the worst of them, and in the mean of a squat and of a raised thigh; how far
-what is worn on the trunk stands off the skin at rest, in % of the body's height (the 99th percentile of its vertices);
-how far what is worn on the legs is higher or lower than on the source, in % of either's height (the 95th percentile);
-how far it is from even at rest, on the mean: from each vertex to the mirror image of its partner, in % of the height;
-and the seconds of one core that it took.
+at rest, in the mean of three poses, in the worst of them, in the mean of a squat and of a raised thigh, and in a
+stride; how far what is worn on the trunk stands off the skin at rest, in % of the body's height (the 99th percentile of
+its vertices); how far what is worn on the legs is higher or lower than on the source, in % of either's height (the 95th
+percentile); how far it is from even at rest, on the mean: from each vertex to the mirror image of its partner, in % of
+the height; and the seconds of one core that it took.
 --remeshed leaves the target 6,000 triangles, whose corners are no mirror images of one another.
 --save keeps a .blend of each case, to look at; --pictures renders each: the source, the target from four sides, and
-in the five poses.
+in the six poses.
 """
 
 import argparse
@@ -81,6 +81,7 @@ CASES = (
         for kind in ("male", "female")
     }
     | {"Suit on Casual": (OWN["Suit"][0], f"{WOMEN}-Casual", OWN["Suit"][2])}
+    | {"Formal on Casual": (OWN["Formal"][0], f"{WOMEN}-Casual", {"Formal_Body": None, "Formal_Legs": None})}
 )
 """Of each case the file of the source and of the target, and the items: objects, or their faces of some materials."""
 
@@ -96,6 +97,9 @@ RAISED = (
     {("upper_leg", "L"): (-1.57, 0, 0), ("lower_leg", "L"): (1.5, 0, 0)},
 )
 """The same of a squat, and of one thigh that is raised."""
+
+STRIDE = ({("upper_leg", side): (turn, 0, 0) for side, turn in (("L", 0.6), ("R", -0.6))},)
+"""The same of a stride, one leg forward and one back as far as in a walk."""
 
 SHOWS = 0.00002, 0.015
 """How far above an item, in the root of the body's area, skin shows: nearer the two are one, farther away it is beside
@@ -226,7 +230,7 @@ def bend(rig, turns):
 def shown(rig, bodies, items):
     """What part of the skin below items shows, by area: at rest, and in each pose."""
     parts, below = [], None
-    for turns in ({}, *POSES, *RAISED):
+    for turns in ({}, *POSES, *RAISED, *STRIDE):
         bend(rig, turns)
         body = TriangleMesh(*shown_surface(bodies))
         near, shows = through(body, TriangleMesh(*shown_surface(items)))
@@ -276,7 +280,7 @@ def picture(rig, source, target, path):
     views = [
         (source, {}, SIDES[0]),
         *((target, {}, side) for side in SIDES),
-        *((target, one, SIDES[0]) for one in (*POSES, *RAISED)),
+        *((target, one, SIDES[0]) for one in (*POSES, *RAISED, *STRIDE)),
     ]
     meshes = [obj for obj in bpy.data.objects if obj.type == "MESH"]
     paths = [path.with_name(f"{path.stem}-{number}.png") for number in range(len(views))]
@@ -321,7 +325,8 @@ def main():
     options = parser.parse_args()
     registered_extension()
     print(
-        f"{'case':18s} confidence  shows at rest  in poses     worst    raised stands off   shifted    uneven  seconds"
+        f"{'case':18s} confidence   at rest  in poses     worst    raised    stride       off"
+        "   shifted    uneven  seconds"
     )
     for case in CASES if options.only == "all" else options.only.split(","):
         bpy.ops.wm.read_homefile(use_empty=True)
@@ -330,9 +335,11 @@ def main():
         seconds = time.process_time() - start
         off = stands_off(bodies, items), shifted(skin, bodies, items), uneven(bodies, items)
         rest, *poses = shown(rig, bodies, items)
-        poses, raised = poses[: len(POSES)], poses[len(POSES) :]
+        poses, raised, stride = poses[: len(POSES)], poses[len(POSES) : -1], poses[-1]
         said = re.search(r"Confidence (\d+)", bpy.context.scene.hiermatch_retarget.report.verdict)
-        numbers = "".join(f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), np.mean(raised), *off))
+        numbers = "".join(
+            f"{100 * part:10.2f}" for part in (rest, np.mean(poses), max(poses), np.mean(raised), stride, *off)
+        )
         print(f"{case:18s} {said[1] if said else '-':>10s}{numbers}{seconds:9.1f}", flush=True)
         if options.save:
             options.save.mkdir(parents=True, exist_ok=True)

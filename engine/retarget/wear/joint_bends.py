@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Poses that clothes are tried in: each joint of a body bent by itself."""
+"""Poses that clothes are tried in: each joint of a body bent by itself, and two that hang side by side bent apart."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -29,8 +30,10 @@ class JointBend:
 
     Attributes
     ----------
+    bone : int
+        The bone that turns in it.
     hanging : (b,) array of bool
-        The bone that turns in the joint, and all that hang on it.
+        That bone, and all that hang on it.
     head : (3,) array of float
         The joint.
     on_skin : (m,) array of float
@@ -39,6 +42,7 @@ class JointBend:
         How they turn, one way after the other.
     """
 
+    bone: int
     hanging: Bools
     head: Floats
     on_skin: Floats
@@ -51,6 +55,34 @@ class JointBend:
     def bent(self, points: Floats, share: Floats, rotation: Floats) -> Floats:
         """Move points (..., 3), so much of each (...) turned about the joint."""
         return points + turned(self.levers(points, share), rotation)
+
+
+@dataclass(frozen=True, eq=False)
+class Pose:
+    """Joints that are bent at once, of which none hangs on another: j of them, each by a rotation (j, 3, 3)."""
+
+    bends: tuple[JointBend, ...]
+    rotations: Floats
+
+    def bent(self, points: Floats, shares: Sequence[Floats]) -> Floats:
+        """Move points (k, 3), so much of each (j, k) turned about each joint."""
+        moved = points.copy()
+        for bend, share, rotation in zip(self.bends, shares, self.rotations, strict=True):
+            moved += turned(bend.levers(points, share), rotation)
+        return moved
+
+    def turned(self, directions: Floats, shares: Sequence[Floats]) -> Floats:
+        """Turn unit vectors (k, 3) along with that, and make them unit vectors again."""
+        return unit_vectors(self._blended(directions, shares, self.rotations))
+
+    def brought_back(self, moves: Floats, shares: Sequence[Floats]) -> Floats:
+        """Find the moves at rest (k, 3) that become some moves in the pose, nearly."""
+        return self._blended(moves, shares, self.rotations.transpose(0, 2, 1))
+
+    def _blended(self, vectors: Floats, shares: Sequence[Floats], rotations: Floats) -> Floats:
+        return vectors + sum(
+            share[:, None] * turned(vectors, rotation) for share, rotation in zip(shares, rotations, strict=True)
+        )
 
 
 def turned(levers: Floats, rotation: Floats) -> Floats:
@@ -85,7 +117,25 @@ def joint_bends(
         hanging, head = skeleton.hanging[bone], skeleton.heads[bone]
         on_skin = row_sums(skin_weights[:, hanging])
         if on_skin @ body.vertex_areas >= _LARGE_PART * body.area:
-            yield JointBend(hanging, head, on_skin, _bends(skeleton.tails[bone] - head, angle))
+            yield JointBend(int(bone), hanging, head, on_skin, _bends(skeleton.tails[bone] - head, angle))
+
+
+def poses_of(bends: Sequence[JointBend]) -> list[Pose]:
+    """Every bend as a pose of its own."""
+    return [Pose((bend,), rotation[None]) for bend in bends for rotation in bend.rotations]
+
+
+def strides(bends: Sequence[JointBend], skeleton: Skeleton) -> list[Pose]:
+    """Poses in which two joints that hang on one bone are bent against each other, as legs are in a stride.
+
+    What both move by halves, as they do the middle of a skirt, stays where it is then, while either limb leaves it.
+    """
+    return [
+        Pose((one, other), np.stack([rotation, rotation.T]))
+        for one, other in combinations(bends, 2)
+        if skeleton.parents[one.bone] == skeleton.parents[other.bone] >= 0
+        for rotation in one.rotations
+    ]
 
 
 def _bends(along: Floats, angle: float) -> Floats:

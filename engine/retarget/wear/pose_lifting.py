@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import block_diag, csr_array, diags_array, vstack
@@ -12,16 +12,17 @@ from scipy.spatial import cKDTree
 
 from ...geometry.laplacian import laplace_beltrami
 from ...geometry.symmetric_factor import symmetric_factor
-from ...mesh.closest_points import FoundPoints
+from ...mesh.closest_points import ClosestPoints, FoundPoints
 from ...mesh.connectivity.welded_parts import WeldedParts
+from ...mesh.surface_points import interpolation_matrix
 from ...mesh.triangle_mesh import TriangleMesh
-from ...runtime.arrays import Bools, Floats, Ints, unit_vectors
+from ...runtime.arrays import Bools, Floats, Ints, marked, unit_vectors
 from ...runtime.background import can_go_beside
 from ...runtime.progress import Progress, Steps
 from ..rig.skeleton import Skeleton
 from ..weights.skin_weights import row_sums
 from .contact import Surface, surface_samples
-from .joint_bends import JointBend, joint_bends, turned
+from .joint_bends import JointBend, Pose, joint_bends, poses_of, strides, turned
 from .pose_mending import WeightedItem
 from .pushing import FIRM, FREE, SPREAD
 from .rigid_pieces import moved_along
@@ -48,9 +49,33 @@ _COARSE = 0.15
 `_NEAR`.  With 0.1 and 0.008 twice as much skin shows at the raised thigh of Formal in ``python -m
 tests.benchmarks.worn_makers``."""
 
+_REACH = 0.022
+"""How deep places of the skin are looked for, in the same unit, that come through cloth of large triangles.  Cloth
+may be lifted for them by `_LOOSE` times as much as it hangs off the skin, up to this: else most of what shows in a
+stride through the skirt of Formal on a woman in trousers still does (tried once)."""
+
+_LOOSE = 2.0
+"""Chosen by hand: with 1 a third more shows there, in wide strides (tried once)."""
+
+_COVERED, _APART = 0.06, 0.014
+"""How far below cloth, in the same unit, a place of the skin is covered by it, and so how far it may slide along it in
+a pose; and how far apart such places are: a part of the size of large triangles."""
+
+_STRAIGHT = 0.5
+"""Least cosine between the way from such a place to the cloth and its normal."""
+
+_LOWER = 0.5
+"""Part of its height over such a place, below which what covers it comes in a pose, for the place to be looked at."""
+
+_RIM = 1e-3
+"""Barycentric coordinate up to which a place is at a side of its triangle."""
+
 _FAR = float(np.radians(80.0))
 """How far joints are bent, as hips are in a squat, in poses that are tried for large triangles alone: without, four
 times as much skin shows through Formal there.  Small ones would take outfits further away in them (0.713)."""
+
+_STRIDE = float(np.radians(45.0))
+"""How far two limbs are bent against each other, as in a long stride."""
 
 _ROOM = 0.8
 """Part of the distance that a vertex would have from the skin, lifted twice as far as any is, from which on it has
@@ -86,8 +111,9 @@ def lift_for_poses_steps(
 
     The weights of the skin are not linear over it, those of a triangle of cloth are: in a bent joint, the larger the
     triangle, the further the skin below its middle comes through.  So places of the cloth that lie on the skin at
-    rest are looked at in poses, and lifted, smoothly, as far as they are short of it.  Layers that lie on each other
-    are lifted together, rigid pieces with what is around them.
+    rest are looked at in poses, and lifted, smoothly, as far as they are short of it.  Where the triangles are large,
+    places of the skin are looked at as well, also where the cloth hangs off it, and it is lifted over those that come
+    through.  Layers that lie on each other are lifted together, rigid pieces with what is around them.
 
     Parameters
     ----------
@@ -121,12 +147,15 @@ def lift_for_poses_steps(
     for bend in joint_bends(body, skin_weights, skeleton, range(len(skeleton)), angle=_FAR):
         rows = lying.partly(cloth, bend)
         looked.append((bend, rows[lying.coarse[rows]]))
+    covered = _Covered(cloth, skin, unit)
+    near = joint_bends(body, skin_weights, skeleton, range(len(skeleton)), angle=_STRIDE)
+    covered.try_in([*poses_of(bends), *strides(list(near), skeleton)])
     for number in range(_ROUNDS):
         yield Progress(number / _ROUNDS, "Trying poses")
-        lacking = lying.lacking(cloth, looked, unit)
-        if not lacking.any():
+        lacking, (shares, pokes) = lying.lacking(cloth, looked, unit), covered.poking()
+        if not lacking.any() and not len(pokes):
             break
-        cloth.lift(lying.shares, lacking)
+        cloth.lift(csr_array(vstack([lying.shares, shares])), np.concatenate([lacking, pokes]))
     yield Progress(1.0, "Trying poses")
     return cloth.lifts()
 
@@ -138,7 +167,8 @@ class _Cloth:
         self.items, self._unit = items, unit
         self.parts = [WeldedParts.of(item.mesh) for item in items]
         meshes = [part.closed for part in self.parts]
-        self.positions = np.concatenate([mesh.vertices for mesh in meshes])
+        self.surface = TriangleMesh.concatenated(meshes)
+        self.positions = self.surface.vertices
         self.weights = csr_array(
             vstack([part.means @ item.weights for part, item in zip(self.parts, items, strict=True)])
         )
@@ -147,8 +177,12 @@ class _Cloth:
         self.is_still = np.concatenate(still) | (row_sums(self.weights) <= 0)
         operators = [laplace_beltrami(mesh) for mesh in meshes]
         self.mass = np.concatenate([np.where(each.mass > 0, each.mass, each.mass.mean()) for each in operators])
-        self.most = (_COARSE * np.sqrt(self.mass)).clip(_MOST * unit, _NEAR * unit)
-        self.is_still |= _is_squeezed(self.positions, heights, self._outward, skin, 2 * self.most)
+        size = np.sqrt(self.mass)
+        self.most_lying = (_COARSE * size).clip(_MOST * unit, _NEAR * unit)
+        self.is_coarse = self.most_lying > _MOST * unit
+        hangs = (_LOOSE * heights).clip(max=_REACH * unit)
+        self.most = np.where(self.is_coarse, np.maximum(hangs, self.most_lying), self.most_lying)
+        self.is_still |= _is_squeezed(self.positions, heights, self._outward, skin, 2 * self.most_lying)
         stiffness = block_diag([each.stiffness for each in operators], format="csr")
         self._smooth = csr_array((SPREAD * unit) ** 2 * stiffness + self._ties(meshes))
         self.moves = np.zeros_like(self.positions)
@@ -253,7 +287,7 @@ class _Lying:
             numbers[at],
             body.triangle_normals[found.triangles[at]],
             np.minimum(heights[at], _ABOVE * unit),
-            (shares @ (cloth.most > _MOST * unit))[at] > 1 / 2,
+            (shares @ cloth.is_coarse)[at] > 1 / 2,
         )
 
     def partly(self, cloth: _Cloth, bend: JointBend) -> Ints:
@@ -286,7 +320,128 @@ class _Lying:
                 alike = np.einsum("ki,ki->k", unit_vectors(back), self.normals[at]) > _TURNED
                 at, worse, back = at[alike], worse[alike], back[alike]
                 largest[at], moves[at] = lack[worse], lack[worse][:, None] * back
-        return moves
+        most = self.shares @ cloth.most_lying - np.linalg.norm(self.shares @ cloth.moves, axis=1)
+        return moves * (most / largest).clip(0, 1)[:, None]
+
+
+class _Covered:
+    """Places of the skin (k) below cloth of large triangles, which may come through it in poses."""
+
+    def __init__(self, cloth: _Cloth, skin: Surface, unit: float) -> None:
+        body, mesh = skin.mesh, cloth.surface
+        shares, owners = surface_samples(body, _APART * unit)
+        places, normals = shares @ body.vertices, np.concatenate([skin.normals, body.triangle_normals[owners]])
+        chosen = _spaced(places, mesh, (_COVERED * unit, _APART * unit))
+        self._cloth, self._unit, self._search = cloth, unit, ClosestPoints(mesh)
+        found = self._search.nearest(places[chosen])
+        over, heights = self._heights_of(found, self._search, places[chosen], normals[chosen])
+        covered = (heights > 0) & (heights < _COVERED * unit) & (cloth.is_coarse[over].sum(axis=1) > 1)
+        self._rim = marked(mesh.boundary_edges, mesh.vertex_count)
+        at = chosen[covered]
+        self._places, self._normals, self._shares = places[at], normals[at], csr_array(shares[at])
+        self._over, self._barycentric, self._heights = over[covered], found.barycentric[covered], heights[covered]
+        self._starts = self._over[np.arange(len(at)), self._barycentric.argmax(axis=1)]
+        self._tries: list[_Try] = []
+
+    def _heights_of(
+        self, found: FoundPoints, search: ClosestPoints, places: Floats, normals: Floats
+    ) -> tuple[Ints, Floats]:
+        """Return the corners of the cloth nearest to places of the skin, and its heights; no numbers if it is aside."""
+        corners = self._cloth.surface.triangles[found.triangles]
+        away = np.einsum("kc,kci->ki", found.barycentric, search.vertices[corners]) - places
+        heights, distances = np.einsum("ki,ki->k", away, normals), np.sqrt(found.squared_distances)
+        return corners, np.where(np.abs(heights) > _STRAIGHT * distances, heights, np.nan)
+
+    def try_in(self, poses: Sequence[Pose]) -> None:
+        """Look at the places in poses whose joints move them or the cloth over them, and not both wholly."""
+        if not len(self._places):
+            return
+        parts = {}
+        for bend in {id(bend): bend for pose in poses for bend in pose.bends}.values():
+            on_cloth, on_skin = row_sums(self._cloth.weights[:, bend.hanging]), self._shares @ bend.on_skin
+            both = [on_skin, *on_cloth[self._over.T]]
+            parts[id(bend)] = on_cloth, on_skin, np.minimum.reduce(both), np.maximum.reduce(both)
+        for pose in poses:
+            moved = [parts[id(bend)] for bend in pose.bends]
+            partly = np.all([(most > _PARTLY) & (least < 1 - _PARTLY) for _, _, least, most in moved], axis=0)
+            rows = np.flatnonzero(partly)
+            if len(rows):
+                self._tries.append(_Try(pose, rows, [each[0] for each in moved], [each[1][rows] for each in moved]))
+
+    def poking(self) -> tuple[csr_array, Floats]:
+        """Find places that come through the cloth: shares of its vertices there (p, w), and the moves over them (p, 3).
+
+        Of each place the pose counts in which it comes furthest.  Next time only those are looked at that were through.
+        """
+        now, largest = self._cloth.positions + self._cloth.moves, np.zeros(len(self._places))
+        corners, barycentric = np.zeros((len(largest), 3), np.int64), np.zeros((len(largest), 3))
+        moves, tries = np.zeros_like(barycentric), []
+        for given in self._tries:
+            one, through = self._through(given, now)
+            if not len(one.rows):
+                continue
+            tries.append(one)
+            worse = np.flatnonzero(through.lacks > largest[one.rows] + _TRIFLE * self._unit)  # not by rounding
+            at, lacks = one.rows[worse], through.lacks[worse]
+            over, where = through.corners[worse], through.barycentric[worse]
+            shares = [np.einsum("kc,kc->k", where, each[over]) for each in one.on_cloth]
+            largest[at], corners[at], barycentric[at] = lacks, over, where
+            moves[at] = one.pose.brought_back(lacks[:, None] * through.normals[worse], shares)
+        self._tries, at = tries, np.flatnonzero(largest)
+        return interpolation_matrix(barycentric[at], corners[at], len(now)), moves[at]
+
+    def _through(self, one: _Try, now: Floats) -> tuple[_Try, _Through]:
+        """Find which places of a try come through the cloth in its pose, if it is at rest where it is now, (w, 3)."""
+        posed = one.pose.bent(now, one.on_cloth)
+        normals = one.pose.turned(self._normals[one.rows], one.on_skin)
+        places = one.pose.bent(self._places[one.rows], one.on_skin)
+        own = np.einsum("kc,kci->ki", self._barycentric[one.rows], posed[self._over[one.rows]]) - places
+        lower = np.einsum("ki,ki->k", own, normals) < _LOWER * self._heights[one.rows]
+        one, normals, places = one.only(lower), normals[lower], places[lower]
+        search = self._search.moved(posed)
+        found = search.walk(places, self._starts[one.rows])
+        over, heights = self._heights_of(found, search, places, normals)
+        within = (heights < 0) & (heights > -_REACH * self._unit)
+        within &= ~((found.barycentric > _RIM) <= self._rim[over]).all(axis=1)
+        home = np.einsum("kc,kci->ki", found.barycentric, self._cloth.positions[over])
+        within &= np.linalg.norm(home - self._places[one.rows], axis=1) < _COVERED * self._unit
+        looks = unit_vectors(np.cross(*(posed[over[:, side]] - posed[over[:, 0]] for side in (1, 2))))
+        within &= np.abs(np.einsum("ki,ki->k", looks, normals)) > _ALIKE
+        lacks = _ABOVE * self._unit - heights
+        return one.only(within), _Through(lacks[within], normals[within], over[within], found.barycentric[within])
+
+
+@dataclass(frozen=True, eq=False)
+class _Try:
+    """A pose, the places looked at in it (r,), and how much its joints move the cloth (w,) and each of them (r,)."""
+
+    pose: Pose
+    rows: Ints
+    on_cloth: Sequence[Floats]
+    on_skin: Sequence[Floats]
+
+    def only(self, chosen: Bools) -> _Try:
+        """Return the same of some of the places, (r,)."""
+        return replace(self, rows=self.rows[chosen], on_skin=[each[chosen] for each in self.on_skin])
+
+
+@dataclass(frozen=True, eq=False)
+class _Through:
+    """How far cloth lacks over places of the skin (p,), which way (p, 3), its corners there and where in it (p, 3)."""
+
+    lacks: Floats
+    normals: Floats
+    corners: Ints
+    barycentric: Floats
+
+
+def _spaced(points: Floats, mesh: TriangleMesh, sizes: tuple[float, float]) -> Ints:
+    """Choose points (k, 3) within a distance of a mesh's extent, one in each cell of another size."""
+    reach, cell = sizes
+    low, high = mesh.vertices.min(axis=0) - reach, mesh.vertices.max(axis=0) + reach
+    near = np.flatnonzero(((points > low) & (points < high)).all(axis=1))
+    cells = np.floor((points[near] - low) / cell).astype(np.int64)
+    return near[np.sort(np.unique(cells, axis=0, return_index=True)[1])]
 
 
 def _below(points: Floats, skin: Surface) -> tuple[FoundPoints, Floats, Floats]:

@@ -5,8 +5,8 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from engine import Skeleton, TriangleMesh
-from engine.retarget.wear.joint_bends import joint_bends
-from tests.shapes import cylinder
+from engine.retarget.wear.joint_bends import Pose, joint_bends, poses_of, strides
+from tests.shapes import cylinder, rotation
 
 BONES = Skeleton(
     np.array([-1, 0, 1]),
@@ -37,3 +37,42 @@ def test_what_is_partly_moved_goes_part_of_the_straight_way():
     point, rotation = np.array([[0, 0, 1.0]]), bend.rotations[0]
     whole = bend.bent(point, np.ones(1), rotation)
     np.testing.assert_allclose(bend.bent(point, np.array([0.25]), rotation), point + 0.25 * (whole - point))
+
+
+def test_limbs_that_hang_side_by_side_are_bent_against_each_other():
+    vertices, triangles = cylinder(24, 32, 0.5, 4.0)
+    body = TriangleMesh.concatenated([TriangleMesh(vertices + np.array([x, 0, 0]), triangles) for x in (-1, 1)])
+    right = (body.vertices[:, 0] > 0).astype(float)
+    weights = csr_array(np.stack([0 * right, 1 - right, right], axis=1))
+    bones = Skeleton(
+        np.array([-1, 0, 0]),
+        np.array([[0, 0, 4.0], [-1, 0, 4], [1, 0, 4]]),
+        np.array([[0, 0, 5.0], [-1, 0, 0], [1, 0, 0]]),
+    )
+    bends = list(joint_bends(body, weights, bones, range(3)))
+    assert [bend.bone for bend in bends] == [0, 1, 2]
+    assert len(poses_of(bends)) == 12
+    poses = strides(bends, bones)
+    assert len(poses) == 4  # of the two limbs alone
+    for pose in poses:
+        assert [bend.bone for bend in pose.bends] == [1, 2]
+        middle, end = np.array([[0, 0, 2.0]]), np.array([[1, 0, 2.0]])
+        none, half, whole = np.zeros(1), np.full(1, 0.5), np.ones(1)
+        # What both move by halves only comes nearer to the joints, or goes down between them.
+        stays, goes = pose.bent(middle, [half, half]) - middle, pose.bent(end, [none, whole]) - end
+        assert np.abs(stays[0, 1]) < 1e-12
+        assert np.abs(goes[0, :2]).max() > 1.5
+
+
+def test_moves_come_back_from_a_pose():
+    body = TriangleMesh(*cylinder(24, 32, 0.5, 4.0))
+    bends = tuple(
+        joint_bends(body, csr_array(np.ones((body.vertex_count, 1))), Skeleton([-1], [[0, 0, 0]], [[0, 0, 1]]), [0])
+    )
+    pose = Pose(bends, rotation([1, 2, 3], 0.7)[None])
+    points, whole = np.array([[0.3, 0.2, 1.0], [1, 0, 0]]), [np.ones(2)]
+    moves = np.array([[0.1, 0, 0], [0, 0.2, 0.1]])
+    there = pose.bent(points, whole) + moves
+    np.testing.assert_allclose(pose.bent(points + pose.brought_back(moves, whole), whole), there, atol=1e-12)
+    direction = np.array([[0, 0, 1.0], [0, 1, 0]])
+    np.testing.assert_allclose(pose.turned(direction, whole), direction @ pose.rotations[0].T, atol=1e-12)

@@ -7,7 +7,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from engine import ClosestPoints, Skeleton, TriangleMesh, run
-from engine.retarget.wear.joint_bends import joint_bends
+from engine.retarget.wear.joint_bends import Pose, joint_bends
 from engine.retarget.wear.pose_lifting import lift_for_poses_steps
 from engine.retarget.wear.pose_mending import WeightedItem
 from tests.shapes import cylinder, rotation
@@ -33,6 +33,12 @@ def sleeve(away, rings=8, around=64):
     vertices, triangles = cylinder(around, rings, 0.5 + away, 3.6)
     vertices[:, 2] += 0.2
     return WeightedItem(vertices, triangles, weights_of(vertices))
+
+
+def aslant(item):
+    """The same turned and shifted a little, so that no place has two nearest triangles: rounding decides nothing."""
+    positions = item.positions @ rotation([0, 0, 1], 0.013).T + np.array([0, 0, 0.007])
+    return WeightedItem(positions, item.triangles, item.weights)
 
 
 def lifts(body, *items):
@@ -82,20 +88,61 @@ def test_little_comes_through_a_joint_that_is_bent_as_in_a_squat():
     assert lifted < 0.3 * bare
 
 
+def legs_in_a_skirt():
+    """Two legs that hang on one bone, and a skirt of few large triangles around both, whose middle both move."""
+    vertices, triangles = cylinder(48, 64, 0.5, 4.0)
+    body = TriangleMesh.concatenated([TriangleMesh(vertices + np.array([x, 0, 0]), triangles) for x in (-0.55, 0.55)])
+    bones = Skeleton(
+        np.array([-1, 0, 0]),
+        np.array([[0, 0, 4.0], [-0.55, 0, 3.8], [0.55, 0, 3.8]]),
+        np.array([[0, 0, 5.0], [-0.55, 0, 0], [0.55, 0, 0]]),
+    )
+
+    def weights(points, left):
+        legs = 1 / (1 + np.exp(8 * (points[:, 2] - 3.5)))
+        return csr_array(np.stack([1 - legs, legs * left, legs * (1 - left)], axis=1))
+
+    tube, faces = cylinder(12, 4, 1.0, 0.9)
+    around = np.arctan2(tube[:, 1], tube[:, 0])
+    places = np.stack([1.16 * np.cos(around), 0.62 * np.sin(around), tube[:, 2] + 3.0], axis=1)
+    skirt = WeightedItem(places, faces, weights(places, (0.5 - places[:, 0]).clip(0, 1)))
+    return body, weights(body.vertices, (body.vertices[:, 0] < 0).astype(float)), bones, skirt
+
+
+def test_less_comes_through_a_skirt_in_a_stride():
+    body, on_skin, bones, skirt = legs_in_a_skirt()
+    (moves,) = run(lift_for_poses_steps([skirt], body=body, skin_weights=on_skin, skeleton=bones))
+    bends = tuple(bend for bend in joint_bends(body, on_skin, bones, range(3)) if bend.bone)
+    below = np.abs(body.vertices[:, 2] - 3.3) < 0.3
+    forward = rotation([1, 0, 0], 0.6)
+    stride = Pose(bends, np.stack([forward, forward.T]))
+    skin = stride.bent(body.vertices[below], [bend.on_skin[below] for bend in bends])
+    depths = []
+    for part in (0, 1):
+        places = stride.bent(skirt.positions + part * moves, list(skirt.weights[:, [1, 2]].toarray().T))
+        cloth = TriangleMesh(places, skirt.triangles)
+        found = ClosestPoints(cloth).nearest(skin)
+        away = skin - found.interpolate(cloth.triangles, cloth.vertices)
+        above = np.einsum("ki,ki->k", away, cloth.triangle_normals[found.triangles])
+        depths.append(float(np.quantile(above, 0.99)))
+    assert depths[0] > 0.05
+    assert depths[1] < 0.5 * depths[0]
+
+
 def test_what_has_enough_room_stays():
     (moves,) = lifts(limb(), sleeve(0.08))
     assert not moves.any()
 
 
 def test_nothing_depends_on_units_or_place():
-    body, item = limb(), sleeve(0.008)
+    body, item = limb(), aslant(sleeve(0.008))
     (moves,) = lifts(body, item)
     shift = np.array([3.0, -2.0, 5.0])
     bigger = TriangleMesh(100 * (body.vertices + shift), body.triangles)
     other = WeightedItem(100 * (item.positions + shift), item.triangles, item.weights)
     bones = Skeleton(BONES.parents, 100 * (BONES.heads + shift), 100 * (BONES.tails + shift))
     (found,) = run(lift_for_poses_steps([other], body=bigger, skin_weights=weights_of(body.vertices), skeleton=bones))
-    np.testing.assert_allclose(found, 100 * moves, atol=0.002)  # of 1.4; places may have two nearest triangles
+    np.testing.assert_allclose(found, 100 * moves, atol=1e-4)  # of 1.4
 
 
 def test_layers_are_lifted_together():
@@ -123,7 +170,7 @@ def test_parts_that_meet_at_a_seam_are_lifted_as_one():
 
 
 def test_seams_stay_closed():
-    body, item = limb(), sleeve(0.008)
+    body, item = limb(), aslant(sleeve(0.008))
     corners = item.triangles.ravel()  # every triangle by itself
     cut = WeightedItem(item.positions[corners], np.arange(len(corners)).reshape(-1, 3), item.weights[corners])
     (moves,), (apart,) = lifts(body, item), lifts(body, cut)
