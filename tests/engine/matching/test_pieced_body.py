@@ -3,8 +3,9 @@
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
-from engine import SurfaceMap, SurfacePoints
+from engine import SurfaceMap, SurfacePoints, TriangleMesh
 from engine.matching.pieced_body import PiecedBody, common_cut, resized_share, torn_share, without_partner
 from tests.limbs import modular_creature
 
@@ -80,3 +81,44 @@ def test_a_body_without_some_pieces(body):
     less = body.without(np.array([2, 5]))
     assert less.shares[[2, 5]] == pytest.approx(0)
     assert less.shares[0] == pytest.approx(body.shares[0] / (1 - body.shares[2] - body.shares[5]))
+
+
+def moved_body(body, vertices):
+    """The body with its vertices elsewhere."""
+    return PiecedBody(TriangleMesh(vertices, body.mesh.triangles), body.pieces)
+
+
+def as_numbered(target):
+    """The map that takes each vertex to the one of its number."""
+    return to_vertices(target, np.arange(target.mesh.vertex_count))
+
+
+def test_a_piece_that_grows_from_where_it_touches_is_not_torn(body):
+    vertices, leg = body.mesh.vertices.copy(), body.pieces == 2
+    away = cKDTree(vertices[~leg]).query(vertices[leg])[0]
+    joint = vertices[leg][away < away.min() + 0.02 * body.unit].mean(axis=0)
+    vertices[leg] = joint + [1, 1, 2.5] * (vertices[leg] - joint)
+    assert torn_share(body, moved_body(body, vertices), as_numbered(moved_body(body, vertices))) == 0
+    vertices[leg] += 0.2 * body.unit
+    target = moved_body(body, vertices)
+    assert torn_share(body, target, as_numbered(target)) == pytest.approx(body.shares[2])
+
+
+def test_a_piece_that_touches_nothing_keeps_its_distance_in_units_of_the_body(body):
+    vertices = body.mesh.vertices.copy()
+    vertices[body.pieces == 2] += [0, 0, -0.4 * body.unit]
+    floating = moved_body(body, vertices)
+    larger = moved_body(body, 3 * vertices)
+    assert torn_share(floating, larger, as_numbered(larger)) == 0
+    assert torn_share(larger, floating, as_numbered(floating)) == 0
+    vertices[body.pieces == 2] += [0, 0, -0.4 * body.unit]
+    target = moved_body(body, vertices)
+    assert torn_share(floating, target, as_numbered(target)) == pytest.approx(floating.shares[2])
+
+
+def test_a_piece_of_which_less_than_half_goes_to_the_trunk_has_a_partner(body):
+    images, leg = np.arange(body.mesh.vertex_count), np.flatnonzero(body.pieces == 4)
+    some = leg[np.cumsum(body.areas[leg]) < 0.4 * body.shares[4]]
+    images[some] = np.flatnonzero(body.pieces == 0)[0]
+    assert len(some) > 5
+    assert not len(without_partner(body, body, to_vertices(body, images)))
