@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Matches of bodies that were put together from pieces."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh, densify, match
-from engine.matching.joined_match import matched_with_pieces_steps
+from engine.matching.joined_match import _is_better, matched_with_pieces_steps
 from engine.matching.refinement import point_distortions, refine_map
 from engine.matching.shape_matching import MatchTask
 from engine.mesh.surface_points import SurfacePoints
@@ -168,3 +170,28 @@ def test_wrong_landmarks_are_said_before_anything_is_matched(pairs, fault, whole
     shapes = Shape(whole[0]), Shape(modular.mesh)
     with pytest.raises(MatchError, match=fault):
         run(matched_with_pieces_steps(*shapes, MatchTask(QUICK, pairs)))
+
+
+def judged(likeness, coverage=1.0, alone=0.0):
+    """A match of which no more than that is known."""
+    known = {"likeness": likeness, "in_place": 0.0, "coverage": coverage, "source_coverage": 1.0, "pieces_alone": alone}
+    return SimpleNamespace(dense=SimpleNamespace(quality=SimpleNamespace(**known)))
+
+
+@pytest.mark.parametrize(
+    ("joined", "pieces", "together", "better"),
+    [
+        (judged(20.0, 0.5), judged(5.0), 1.0, True),  # right rather than not, and the other is not
+        (judged(20.0), judged(25.0), 0.9, True),  # more of the bodies goes together
+        (judged(20.0), judged(15.0), 0.99, False),  # hardly more does
+        (judged(20.0, 0.8), judged(25.0), 0.9, False),  # less has a partner
+        (judged(20.0, alone=0.2), judged(25.0), 0.9, False),  # pieces have none
+        (judged(8.0), judged(5.0), 0.5, True),  # both are wrong rather than not: the more likely one
+        (judged(5.0), judged(8.0), 0.5, False),
+        (judged(None), judged(None), 0.5, True),  # landmarks say that both are right
+    ],
+)
+def test_joined_bodies_are_preferred_if_more_of_them_goes_together_or_pieces_are_wrong(
+    joined, pieces, together, better
+):
+    assert _is_better(joined, pieces, together) == better

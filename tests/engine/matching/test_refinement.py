@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from engine import MatchError, MeshError, SurfaceMap, SurfacePoints, TriangleMesh
+from engine import GeodesicSolver, MatchError, MeshError, SurfaceMap, SurfacePoints, TriangleMesh
 from engine.matching.refinement import distortion_after, placed_by_map, point_distortions, refine_map
 from tests.shapes import creature, icosphere, posed
 
@@ -122,6 +122,20 @@ class TestDistortions:
         images[5] = ball.vertex_count + 3
         assert point_distortions(ball, both, vertices, images).max() < 0.02
         assert point_distortions(both, ball, images, vertices).max() < 0.02
+
+    @pytest.mark.parametrize(("count", "error"), [(20, 1e-6), (140, 0.15)])
+    def test_it_is_the_root_mean_square_over_the_others_or_a_spread_part_of_them(self, count, error):
+        ball, random = TriangleMesh(*icosphere(6)), np.random.default_rng(0)
+        large = TriangleMesh(5 * ball.vertices, ball.triangles)
+        vertices, images = (random.choice(ball.vertex_count, count, replace=False) for _ in range(2))
+        rows = [
+            GeodesicSolver(mesh).distances(chosen)[:, chosen] / np.sqrt(mesh.area)
+            for mesh, chosen in ((ball, vertices), (large, images))
+        ]
+        expected = np.sqrt(np.square(rows[0] - rows[1]).sum(axis=0) / (count - 1))
+        found = point_distortions(ball, large, vertices, images)
+        np.testing.assert_allclose(found, expected, rtol=2 * error)
+        assert found.mean() == pytest.approx(expected.mean(), rel=error)
 
     def test_one_point(self):
         ball = TriangleMesh(*icosphere(3))

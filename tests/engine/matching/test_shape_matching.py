@@ -8,7 +8,7 @@ import pytest
 
 from engine import MatchError, MatchSettings, Shape, TriangleMesh
 from engine.matching import shape_matching
-from engine.matching.shape_matching import Clock, MatchTask, matched_steps
+from engine.matching.shape_matching import Clock, MatchTask, _distinct_samples, matched_steps
 from engine.runtime.progress import run
 from tests.shapes import creature, icosphere
 
@@ -78,3 +78,11 @@ def test_landmarks_come_first_and_exactly(meshes):
 
 def test_every_stage_is_timed(result):
     assert list(result.seconds) == ["preparation", "geodesics", "descriptors", "coarse", "hierarchy"]
+
+
+def test_points_get_samples_of_their_own_near_to_them_and_landmarks_theirs():
+    """On a line: the last two points are nearest to one sample, and the landmark is far from its own."""
+    samples, points = np.array([9.0, 0, 1, 2, 3, 4]), np.array([0.0, 0.1, 2.1, 2.2])
+    rows = np.abs(samples[:, None] - points).astype(np.float32)
+    assert _distinct_samples(rows, 0).tolist() == [1, 2, 3, 4]
+    assert _distinct_samples(rows, 1).tolist() == [0, 1, 3, 4]
