@@ -25,6 +25,7 @@ from .credibility import EVEN, LITTLE_RISE, MUCH_ALIKE, RISE, is_less_alike, is_
 from .dense_hypotheses import map_hypotheses_steps, unrefined_hypotheses_steps
 from .landmark_selection import agrees
 from .limb_sides import repaired_start_steps
+from .lost_limbs import lost_limbs
 from .registered_hypotheses import Candidate, Follower
 
 MOST = 3
@@ -179,6 +180,18 @@ def _limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
     return sorted([repaired, *candidates], key=lambda candidate: candidate.score)
 
 
+def _lost_limbs_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
+    """Propose the best candidate anew if both surfaces have ends of limbs that it loses, with these held together."""
+    follow, best = contest.follow, candidates[0]
+    if follow.ties is not None:
+        return candidates
+    pairs = lost_limbs(follow.x, follow.y, follow.vertex_maps(best.registration))
+    if not len(pairs):
+        return candidates
+    held = yield from follow.held_steps(best.hypothesis, pairs)
+    return sorted([*candidates, held], key=attrgetter("score"))
+
+
 def _turned_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Candidate]]:
     """Propose a body that looks the other way: turned half around from where most of it is left in place.
 
@@ -206,6 +219,7 @@ def _rolls_steps(contest: Contest, candidates: list[Candidate]) -> Steps[list[Ca
 PROPOSERS = (
     Proposer(_matchings_steps, LITTLE_RISE),
     Proposer(_limbs_steps, LITTLE_RISE),
+    Proposer(_lost_limbs_steps, LITTLE_RISE),
     Proposer(_turned_steps, LITTLE_RISE),
     Proposer(_rolls_steps, RISE),
 )

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..geometry.procrustes import agreement_in_place
 from ..mesh.closest_points import FoundPoints
+from ..mesh.surface_points import SurfacePoints
 from ..registration.axial_twists import rolled_back, untwisted
 from ..registration.axial_windings import wound_steps
 from ..registration.deformable import DeformableSurface
@@ -204,6 +205,12 @@ class Follower:
         steps = register_steps(source, target, start, stages, first, posed=posed, ties=self.ties, guides=guides)
         registration = yield from within(steps, 0.2, 1.0)
         return self._judged(hypothesis, registration)
+
+    def held_steps(self, hypothesis: MapHypothesis, pairs: Ints) -> Steps[Candidate]:
+        """Do so with vertices of source and target (k, 2) held together, which is forgotten afterwards."""
+        points = SurfacePoints.at_vertices(self.source.mesh, pairs[:, 0])
+        ties = Ties.at(self.source.mesh, points, self.target.vertices[pairs[:, 1]])
+        return (yield from replace(self, ties=ties).steps(hypothesis))
 
     def rolled_back_steps(self, candidates: Sequence[Candidate]) -> Steps[list[list[Candidate]]]:
         """Turn a long body back where it is turned about its axis, and try how else it might lie as a whole.
