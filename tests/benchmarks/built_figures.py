@@ -4,12 +4,12 @@
     python -m tests.benchmarks.built_figures [--kinds chibi,bird,...] [--pairs 4] [--seed 1] [--style all]
 
 People, toys with large heads or short legs, centaurs, mermaids, people with wings and a tail, quadrupeds, birds,
-insects, two-legged lizards: each is made of round cones along bones.  The second of a pair has other lengths and girths
-of its limbs, by as much as `--spread` says (0.25: a quarter up or down is usual), and another pose; both look the same
-way, but for a turn about the vertical in one pair of four.  The surface is that of the first, deformed, so that the
-true correspondence is known; both are then meshed anew in one of the styles:
+insects, two-legged lizards: each is made of round cones along bones.  Both of a pair are one such surface,
+deformed to other lengths and girths of its limbs, by as much as `--spread` says (0.25: a quarter up or down is usual),
+and to another pose, so that the true correspondence is known.  They look the same way, but for a turn about the
+vertical of one in four.  Both are then meshed anew, the source evenly, the target in one of the styles:
 
-    even      5,000 vertices, spread evenly
+    even      4,000 vertices, spread evenly
     few       900 of them, by Blender's Decimate
     voxels    by Blender's voxel remesh, so that what touches is one
     uneven    small triangles on one side of the body, large ones on the other
@@ -32,7 +32,7 @@ from scipy.spatial import cKDTree
 from engine import HierMatchError, MatchSettings, Skeleton, TriangleMesh, match
 from tests.benchmarks.remeshed import FAR, WRONG, Remeshed, errors, remeshed, said
 from tests.people import RADII, bones_of, smooth_weights
-from tests.shapes import capsule_surface, rotation
+from tests.shapes import capsule_surface, rotation, subdivided
 
 CONFIDENT = 0.5
 HANDS = {"hand", "thumb1", "thumb2", "index1", "index2", "middle1", "middle2"}
@@ -300,10 +300,10 @@ def by_blender(vertices, triangles, kind, **settings):
 
 
 STYLES = {
-    "even": lambda v, t: remeshed(v, t, "figure", 5000).mesh,
+    "even": lambda v, t: remeshed(*subdivided(v, t, 2), "figure", 4000).mesh,
     "few": lambda v, t: by_blender(v, t, "DECIMATE", ratio=900 / len(v)),
     "voxels": lambda v, t: by_blender(v, t, "REMESH", mode="VOXEL", voxel_size=np.ptp(v, axis=0).max() / 90),
-    "uneven": lambda v, t: by_blender(v, t, "DECIMATE", ratio=0.5, vertex_group="Left", vertex_group_factor=10),
+    "uneven": lambda v, t: by_blender(v, t, "DECIMATE", ratio=0.65, vertex_group="Left"),
 }
 
 
