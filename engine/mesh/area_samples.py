@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..runtime.arrays import Floats, Ints
+from ..runtime.arrays import Bools, Floats, Ints
 from .triangle_mesh import TriangleMesh
 
 _FIRST, _SECOND = 0.7548776662466927, 0.5698402909980532
@@ -32,6 +32,11 @@ class AreaSamples:
     positions: Floats
     triangles: Ints
     areas: Floats
+
+    def of_triangles(self, chosen: Bools) -> AreaSamples:
+        """Return those of some of the triangles, (m,)."""
+        kept = chosen[self.triangles]
+        return AreaSamples(self.positions[kept], self.triangles[kept], self.areas[kept])
 
 
 def area_samples(mesh: TriangleMesh, area: float) -> AreaSamples:

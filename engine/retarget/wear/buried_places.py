@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ...mesh.area_samples import AreaSamples, even_samples
 from ...mesh.triangle_mesh import TriangleMesh
@@ -31,6 +32,10 @@ _ABOVE = 0.007
 
 _WITHIN = 0.5
 """Winding number from which on a point is within."""
+
+_ONE, _AS_LARGE = 1e-6, 1e-3
+"""Distance, in the same unit, between the middles of two triangles, and part of their area, up to which they are one:
+what single precision leaves of it."""
 
 _CHUNK = 256
 """Points treated at once, which bounds the memory."""
@@ -83,6 +88,8 @@ class BuriedPlaces:
         found = _hidden(mesh, np.concatenate([mesh.vertices, middles]), samples)
         hidden, inner = found[: mesh.vertex_count], found[mesh.vertex_count :]
         triangles = np.flatnonzero(inner & ~hidden[mesh.triangles].any(axis=1))
+        nothing = _coincident(middles, np.flatnonzero(inner), mesh)
+        samples = samples.of_triangles(~marked(nothing, mesh.triangle_count))
         points = np.concatenate([mesh.vertices[hidden], middles[triangles]])
         normals = np.concatenate([mesh.vertex_normals[hidden], mesh.triangle_normals[triangles]])
         within = _winding_numbers(mesh, samples, points + _ABOVE * np.sqrt(mesh.area) * normals) > _WITHIN
@@ -110,6 +117,20 @@ def _hidden(mesh: TriangleMesh, places: Floats, samples: AreaSamples) -> Bools:
     for depths in depths_behind(surface, places, cell, _DIRECTIONS):
         hidden &= depths > _DEEP * unit
     return hidden
+
+
+def _coincident(middles: Floats, chosen: Ints, mesh: TriangleMesh) -> Ints:
+    """Choose those triangles, by their middles (m, 3), that lie on others as large.
+
+    Where two parts were cut apart and closed, there is nothing between.  But if the faces that close them look the same
+    way, the inside of one seems to be outside.
+    """
+    if not len(chosen):
+        return chosen
+    near, other = cKDTree(middles).query(middles[chosen], [2], distance_upper_bound=_ONE * np.sqrt(mesh.area))
+    lying = np.flatnonzero(np.isfinite(near[:, 0]))
+    own, areas = chosen[lying], mesh.triangle_areas
+    return own[np.isclose(areas[own], areas[other[lying, 0]], rtol=_AS_LARGE)]
 
 
 def _winding_numbers(mesh: TriangleMesh, samples: AreaSamples, points: Floats) -> Floats:

@@ -99,3 +99,24 @@ def test_large_triangles_that_close_a_waist_are_buried_without_their_corners():
     assert (np.abs(buried.middles[:, 2]) < 0.02).all()
     apart = joined(prism(-2.0, 0.0), prism(1.0, 3.0))
     assert not len(BuriedPlaces.of(apart).on(Surface(apart), apart.vertices).middles)
+
+
+@pytest.mark.parametrize("turn_over", [False, True])
+def test_faces_that_close_two_parts_at_one_place_are_buried_whichever_way_they_look(turn_over):
+    lower, upper = prism(-2.0, 0.0), prism(0.0, 2.0)
+    triangles = upper.triangles.copy()
+    lid = (upper.vertices[triangles][:, :, 2] == 0).all(axis=1)
+    if turn_over:
+        triangles[lid] = triangles[lid][:, ::-1]
+    # As single precision leaves them, the lids are not quite one.
+    shaken = upper.vertices + 1e-7 * np.random.default_rng(0).standard_normal(upper.vertices.shape)
+    body = joined(lower, TriangleMesh(shaken, triangles))
+    # They have no place on the other body either, but come to lie at its own lids.
+    found = BuriedPlaces.of(body).on(Surface(body), body.vertices)
+    assert len(found.middles)
+    assert (np.abs(found.middles[:, 2]) < 0.01).all()
+
+
+def test_a_body_whose_faces_are_all_there_twice_has_an_outside():
+    body = joined(ball((0, 0, 0)), ball((0, 0, 0)))
+    assert not buried_vertices(body).any()
