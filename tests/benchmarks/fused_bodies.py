@@ -22,7 +22,6 @@ import argparse
 import time
 from dataclasses import dataclass
 
-import bpy
 import numpy as np
 from scipy.optimize import minimize
 from scipy.sparse.csgraph import dijkstra
@@ -31,6 +30,7 @@ from scipy.spatial import cKDTree
 from engine import GeodesicSolver, HierMatchError, MatchSettings, Shape, Skeleton, TriangleMesh, match
 from engine.geometry.handle_loops import genus
 from engine.mesh.connectivity.adjacency import edge_graph
+from tests.benchmarks.built_figures import by_blender
 from tests.benchmarks.remeshed import FAR, PLACES, said
 from tests.people import HANGING, RADII, Person, Rig, moved, person, smooth_weights
 from tests.shapes import capsule_surface
@@ -256,23 +256,6 @@ def bodies_of(number):
     return animal(LEGS[number % len(LEGS)]), [ANIMALS[name] for name in poses]
 
 
-def voxel_remeshed(vertices, triangles, size):
-    """Mesh a surface anew as Blender's voxel remesh does, its triangles cut as Blender cuts them."""
-    mesh = bpy.data.meshes.new("Body")
-    mesh.from_pydata(vertices, [], triangles)
-    thing = bpy.data.objects.new("Body", mesh)
-    bpy.context.collection.objects.link(thing)
-    modifier = thing.modifiers.new("Remesh", "REMESH")
-    modifier.mode, modifier.voxel_size = "VOXEL", size
-    made = thing.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
-    made.calc_loop_triangles()
-    places = np.array([vertex.co for vertex in made.vertices], float)
-    faces = np.array([list(triangle.vertices) for triangle in made.loop_triangles])
-    bpy.data.objects.remove(thing)
-    bpy.data.meshes.remove(mesh)
-    return TriangleMesh(places, faces)
-
-
 class Fused:
     """A pose of a body before it was remeshed, and after."""
 
@@ -280,7 +263,7 @@ class Fused:
         angles, made = angles_of(body, pose), body.person
         motion = moved(made.rig, {name: [vector] for name, vector in angles.items()})
         self.before = TriangleMesh(made.posed(motion)[0], made.mesh.triangles)
-        self.after = voxel_remeshed(self.before.vertices, self.before.triangles, voxel)
+        self.after = by_blender(self.before.vertices, self.before.triangles, "REMESH", mode="VOXEL", voxel_size=voxel)
         self.near = NEAR * voxel
         away, self.places = cKDTree(self.after.vertices).query(self.before.vertices)
         before = cKDTree(self.before.vertices).query(self.after.vertices[self.places])[1]
