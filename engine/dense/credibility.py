@@ -75,7 +75,7 @@ DOUBTFUL = 0.3
 """Confidence of a whole map below which it is not trusted unless the user wants it: chosen by hand, as more of such
 maps is wrong than right."""
 
-_UNCERTAIN = 0.4
+_UNCERTAIN = 0.35
 """The same below which one of two whole bodies may be a part that was closed: a half that is laid onto all of one has
 0.32 by the rounding of one processor, and less than `DOUBTFUL` by that of others (a test of ``partial_match``)."""
 
