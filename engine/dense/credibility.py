@@ -77,7 +77,7 @@ maps is wrong than right."""
 
 _UNCERTAIN = 0.35
 """The same below which one of two whole bodies may be a part that was closed: a half that is laid onto all of one has
-0.32 by the rounding of one processor, and less than `DOUBTFUL` by that of others (a test of ``partial_match``)."""
+0.32 on one processor, where a test of ``partial_match`` failed with `DOUBTFUL` that passes on others."""
 
 _LEAST_CREDIBILITY = 0.1
 """What vertices of a map that is surely wrong are still trusted: none at all are those without a partner."""
