@@ -27,8 +27,10 @@ _HEATS = (1, None), (4, 25), (len(FAST), 12)
 the starts, for 36 sides of pairs of PARTIALSMAL, one was among the best eleven after the first round, and of the best
 nine after the fourth."""
 
-_REGROWN, _POLISHED, _KEPT = 6, 5, 8
-"""How many of the best fits are grown again, are registered once more, and are returned."""
+_REGROWN, _POLISHED, _KEPT = (6, 4), 4, 8
+"""How many of the best fits that differ are grown again: of those before the last rounds, in which a right one whose
+limbs lie wrongly is strained most, and of all; how many are registered once more, and how many are returned.  Chosen
+for 40 pairs of PARTIALSMAL, ten of PFARM and 22 of TOSCA and FAUST; see `docs/tried.md`."""
 
 _SAME = 0.05
 """Median distance of the vertices in either overlap, in units of length, up to which two fits are the same."""
@@ -79,23 +81,23 @@ def overlap_fits_steps(pair: CoarsePair) -> Steps[list[ScoredFit]]:
     source, target = pair.coarse
     yield Progress(0.0, _LABEL)
     starts = yield from within(_starts_steps(pair), 0.0, 0.3)
+    before: list[ScoredFit] = []
     fits: list[ScoredFit] = []
     done, begin = 0, 0.3
     for rounds, most in _HEATS:
         order = sorted(range(len(fits)), key=lambda number: -fits[number].score)[:most]
         starts = [replace(starts[one], positions=fits[one].fit.positions) for one in order] or starts
-        fits = []
+        before, fits = fits, []
         for number, start in enumerate(starts):
             fits.append(_followed(source, target, start, FAST[done:rounds], done))
             yield Progress(begin + 0.55 / len(_HEATS) * (number + 1) / len(starts), _LABEL)
         done, begin = rounds, begin + 0.55 / len(_HEATS)
-    best = _distinct(fits, _REGROWN)
-    for number, each in enumerate(list(best)):
-        best.append(_regrown(source, target, each))
-        yield Progress(0.85 + 0.07 * (number + 1) / _REGROWN, _LABEL)
-    for number, each in enumerate(_distinct(best, _POLISHED)):
-        best.append(scored_fit(source, target, register_parts(source, target, each.fit.positions, REST)))
-        yield Progress(0.92 + 0.08 * (number + 1) / _POLISHED, _LABEL)
+    best = list(fits)
+    improvements = (regrown, before, _REGROWN[0]), (regrown, best, _REGROWN[1]), (_polished, best, _POLISHED)
+    for number, (improved, among, most) in enumerate(improvements):
+        for each in _distinct(among, most):
+            best.append(improved(source, target, each))
+            yield Progress(0.85 + 0.05 * (number + 1), _LABEL)
     return _distinct(best, _KEPT)
 
 
@@ -167,8 +169,21 @@ def _are_same(first: Fit, second: Fit) -> bool:
     return not len(apart) or float(np.median(apart)) <= _SAME
 
 
-def _regrown(source: PartSurface, target: PartSurface, scored: ScoredFit) -> ScoredFit:
-    """Register again from the half of the overlap that fits best."""
+def _polished(source: PartSurface, target: PartSurface, scored: ScoredFit) -> ScoredFit:
+    """Register once more, all the way from stiff to soft."""
+    return scored_fit(source, target, register_parts(source, target, scored.fit.positions, REST))
+
+
+def regrown(source: PartSurface, target: PartSurface, scored: ScoredFit) -> ScoredFit:
+    """Register again from the half of the overlap that fits best, so that what lies wrongly is let go.
+
+    Parameters
+    ----------
+    source, target : PartSurface
+        The surfaces.
+    scored : ScoredFit
+        A registration of the first to the second; if hardly anything overlaps, it is returned.
+    """
     fit = scored.fit
     if fit.members.sum() < _LEAST_MEMBERS:
         return scored
