@@ -93,11 +93,15 @@ def overlap_fits_steps(pair: CoarsePair) -> Steps[list[ScoredFit]]:
             yield Progress(begin + 0.55 / len(_HEATS) * (number + 1) / len(starts), _LABEL)
         done, begin = rounds, begin + 0.55 / len(_HEATS)
     best = list(fits)
-    improvements = (regrown, before, _REGROWN[0]), (regrown, best, _REGROWN[1]), (_polished, best, _POLISHED)
-    for number, (improved, among, most) in enumerate(improvements):
+    for improved, among, most in (
+        (regrown, before, _REGROWN[0]),
+        (regrown, best, _REGROWN[1]),
+        (_polished, best, _POLISHED),
+    ):
         for each in _distinct(among, most):
             best.append(improved(source, target, each))
-            yield Progress(0.85 + 0.05 * (number + 1), _LABEL)
+            begin += 0.15 / (sum(_REGROWN) + _POLISHED)
+            yield Progress(begin, _LABEL)
     return _distinct(best, _KEPT)
 
 

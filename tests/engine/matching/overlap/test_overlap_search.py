@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from engine import TriangleMesh, run
+from engine.matching.overlap import overlap_search
 from engine.matching.overlap.oriented_patches import oriented_patches
 from engine.matching.overlap.overlap_search import PATCHES, CoarsePair, overlap_fits_steps, regrown, scored_fit
 from engine.matching.overlap.part_registration import FAST, register_parts
@@ -15,6 +16,9 @@ CUT = 0.45
 """How far behind the middle the front part goes on, and before it the rear part does."""
 
 COARSE = 800
+
+LAST = 4
+"""Rounds after which the last ones begin."""
 
 
 @pytest.fixture(scope="module")
@@ -52,6 +56,26 @@ def test_the_most_credible_way_is_the_right_one(pair, fits, turn):
     errors = np.linalg.norm(best.positions - truth, axis=1)[best.members]
     assert best.members.any()
     assert np.median(errors) < 0.02
+
+
+def test_a_right_way_that_is_lost_in_the_last_rounds_is_grown_again(pair, turn, monkeypatch):
+    """Limbs that lie wrongly may strain the right way so much at last that others seem better."""
+    truth = pair.coarse[0].vertices @ turn.T
+    lost = []
+
+    def strained(source, target, start, rounds, *, done=0, **options):
+        fit = register_parts(source, target, start, rounds, done=done, **options)
+        is_right = np.median(np.linalg.norm(fit.positions - truth, axis=1)) < 0.1
+        if done == LAST and is_right:
+            lost.append(fit)
+            around = fit.positions.mean(axis=0)
+            fit = register_parts(source, target, around + (fit.positions - around) * [-1, -1, 1], rounds, done=done)
+        return fit
+
+    monkeypatch.setattr(overlap_search, "register_parts", strained)
+    best = run(overlap_fits_steps(pair))[0].fit
+    assert lost
+    assert np.median(np.linalg.norm(best.positions - truth, axis=1)[best.members]) < 0.02
 
 
 def test_ways_differ_and_are_in_order(fits):
