@@ -234,7 +234,8 @@ def _mutual_steps(pair: CoarsePair, ways: tuple[list[ScoredFit], list[ScoredFit]
             other = max(others, key=lambda scored: scored.score)
             fits = (other.fit, each.fit) if back else (each.fit, other.fit)
             found.append(_MutualFit(fits, (each.score + other.score) / 2))
-    return sorted(found, key=lambda mutual: -mutual.score)
+    shared = [mutual for mutual in found if mutual.score > -np.inf]
+    return sorted(shared, key=lambda mutual: -mutual.score)
 
 
 _Side = tuple[Ints, Bools]

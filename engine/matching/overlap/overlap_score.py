@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...runtime.arrays import TINY, Bools, Ints
+from ...runtime.arrays import Bools, Ints
 from .part_registration import Fit
 from .part_surface import PartSurface
 
@@ -36,13 +36,15 @@ def shared_area(source: PartSurface, target: PartSurface, fit: Fit) -> float:
 
 
 def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
-    """Compare registrations: larger is more credible.
+    """Compare registrations: larger is more credible, and minus infinity if nothing overlaps.
 
     The overlap of two parts of a body ends where one of them was cut off.  The true one is closely matched, hardly
     strained, and has no other outline.
     """
+    if not (fit.members.any() and fit.members_back.any()):
+        return -np.inf
     here, there = source.mass * fit.members, target.mass * fit.members_back
-    both = max(float(here.sum() + there.sum()), TINY)
+    both = float(here.sum() + there.sum())
     differences = (
         np.abs(source.curvatures - target.curvatures[fit.there.images]).mean(axis=1),
         np.abs(target.curvatures - source.curvatures[fit.back.images]).mean(axis=1),
@@ -51,7 +53,7 @@ def overlap_score(source: PartSurface, target: PartSurface, fit: Fit) -> float:
     inner += _inner_outline(target, source, fit.members_back, fit.back.images)
     values = (
         float(here @ fit.there.gaps + there @ fit.back.gaps) / both,
-        float(fit.energies @ fit.members) / max(float(here.sum()), TINY),
+        float(fit.energies @ fit.members) / float(here.sum()),
         float(here @ differences[0] + there @ differences[1]) / both,
         inner,
         max(shared_area(source, target, fit), _LEAST_AREA),

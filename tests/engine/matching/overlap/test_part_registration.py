@@ -63,6 +63,12 @@ def test_the_true_overlap_is_more_credible_than_others(whole, half, fit):
     assert true > max(others) + 5
 
 
+def test_nothing_in_common_is_less_credible_than_anything(whole, half):
+    apart = register_parts(whole[0], half[0], whole[0].vertices + 50.0, ())
+    assert not apart.members.any()
+    assert overlap_score(whole[0], half[0], apart) == -np.inf
+
+
 def test_the_score_does_not_depend_on_which_surface_is_which(whole, half, fit):
     back = register_parts(half[0], whole[0], half[0].vertices, FINE)
     assert overlap_score(half[0], whole[0], back) == pytest.approx(overlap_score(whole[0], half[0], fit), abs=3)
