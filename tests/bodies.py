@@ -115,6 +115,13 @@ def two_headed(resolution, turn=0.0):
     return capsule_surface([*half, *other], [[-1.9, -1.0, -1.3], [1.9, 1.0, 1.3]], resolution, turn)
 
 
+def forked(stem, resolution=24):
+    """A trunk with one limb along x that forks into two prongs, to both sides along y."""
+    prongs = [((0.9, 0, 0), (1.25, side * 0.4, 0), 0.05, 0.045) for side in (-1, 1)]
+    capsules = [((-0.5, 0, 0), (-0.1, 0, 0), 0.25, 0.2), ((-0.1, 0, 0), (0.9, 0, 0), stem, stem), *prongs]
+    return capsule_surface(capsules, [[-1, -0.7, -0.5], [1.5, 0.7, 0.5]], resolution, 0.3)
+
+
 def fish(resolution=24):
     """Long body along x with a fin on its back and, behind a thin stalk, a fluke that looks the same from below."""
     vertices, triangles = icosphere(resolution)

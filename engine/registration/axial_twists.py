@@ -10,43 +10,12 @@ from scipy.ndimage import minimum_filter
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from ..geometry.orientation import tangent_gradient
 from ..geometry.procrustes import nearest_rotations
 from ..runtime.arrays import Floats, Ints, unit_vectors
 from ..runtime.worker import search_threads
-from ..shapes.extremities import spread_extremities
 from ..shapes.shape import Shape
 from .deformable import DeformableSurface
-
-_LIMBS, _APART = 8, 0.25
-"""How many limbs are looked at, and how far apart, in sqrt(area), their tips are at least."""
-
-_LONGEST = 0.8
-"""Length of limbs that is looked at, in sqrt(area)."""
-
-_WIDTH = 0.03
-"""Distance between two rings around a limb, and how far a ring reaches to either side, in sqrt(area)."""
-
-_FEWEST_VERTICES, _FEWEST_RINGS = 15, 4
-"""Vertices around a limb, and rings along it, that are needed to say which way round it lies."""
-
-_WIDER = 2.5
-"""How many times as wide as those before all rings are from where on the limb is the body."""
-
-_WIDE_RINGS = 5
-"""How many rings in a row may be wider than that though there is more of the limb beyond: those of a hand."""
-
-_MOSTLY = 0.5
-"""Part of a ring that must be of a limb, and not of another one, for the limb to go on."""
-
-_THIN = 0.5
-"""Part of the median radius of its rings up to which a limb has its tip."""
-
-_LONG = 2.5
-"""Ratio of the two lowest eigenvalues from which on a body is turned back like a limb; that of a rod is 4."""
-
-_SLICES = 60
-"""Parts of a long body, each of the same difference of its first eigenfunction, whose lengths are measured."""
+from .limb_rings import SPACING, Limb, axis_of, forked_limbs, long_body, separate_limbs
 
 _TRIED, _ANGLES, _TURNS = 16, 32, 2
 """Angles about the axis that are tried in a turn, how many are told apart, and how many turns either way."""
@@ -54,12 +23,14 @@ _TRIED, _ANGLES, _TURNS = 16, 32, 2
 _NORMAL_LENGTH = 0.05
 """How many units of length a unit of difference of the normals counts when points are matched."""
 
-_POINT = 1e-12
-"""Squared radius, in units of the area, of what is no more than a point."""
-
 _GAIN, _GAIN_UNLIKE = 0.02, 0.2
 """Part of its cost that turning a limb must save, in one body posed otherwise and in bodies of unlike build: rings of
 these are no rigid bodies, and meet hardly better one way than another."""
+
+_GAIN_FORKED = 0.5
+"""The same for a forked limb, of what its cost is more than that of all rings at their best angles: prongs bend against
+each other in any pose, so these are no rigid bodies either.  Half turns of wings save 0.5 to 0.8 of that (`python -m
+tests.benchmarks.built_figures --kinds winged --pairs 10 --style even`)."""
 
 _LEAST_TURN = 0.8
 """Turn of any ring, in radians, below which a limb is left to the registration."""
@@ -85,47 +56,14 @@ class Untwisted(NamedTuple):
     otherwise: list[Winding]
 
 
-class _Ring(NamedTuple):
-    """What lies around a limb at some distance from its tip."""
-
-    distance: float
-    vertices: Ints  # (m,)
-    weights: Floats  # (m,), with the sum one
-    area: float  # that the ring stands for
-
-
-class _Limb(NamedTuple):
-    """A limb, or a whole body, and the rings around it.
-
-    Attributes
-    ----------
-    vertices : (v,) array of int
-        Its vertices.
-    distances : (v,) array of float
-        How far they are from the tip, along the limb.
-    rings : list of _Ring
-        The rings, tip first.
-    radii : (k,) array of float
-        Their radii at rest.
-    held : bool
-        Whether the last ring stays where it is.
-    """
-
-    vertices: Ints
-    distances: Floats
-    rings: list[_Ring]
-    radii: Floats
-    held: bool
-
-
 def untwisted(
     shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: Floats, isometry: float = 1.0
 ) -> Untwisted:
     r"""Turn back what a registration has turned about the axis of a limb.
 
     A thin limb that is placed by smooth functions is no more than a curve: which way round it lies is left to chance,
-    and closest points do not turn it back.  So the rings around each limb are turned about its axis by the angles
-    :math:`\theta_k` of least
+    and closest points do not turn it back.  So the rings around each limb, forked ones first, are turned about its axis
+    by the angles :math:`\theta_k` of least
 
     .. math:: \sum_k \frac{A_k}{r_k^2} D_k(\theta_k)
         + \sum_k \frac{\pi \bar r_k^3}{h} (\tau_k + \theta_{k+1} - \theta_k)^2,
@@ -161,7 +99,9 @@ def untwisted(
     .. [1] R. Bellman, "Dynamic Programming", Princeton University Press 1957.
     """
     gain = _GAIN_UNLIKE + isometry * (_GAIN - _GAIN_UNLIKE)
-    return _turned_back(_limbs(shape, source), source, target, positions, gain)
+    for fork in forked_limbs(shape, source):
+        positions = _turned_back([fork], source, target, positions, _GAIN_FORKED).positions
+    return _turned_back(separate_limbs(shape, source), source, target, positions, gain)
 
 
 def rolled_back(shape: Shape, source: DeformableSurface, target: DeformableSurface, positions: Floats) -> Untwisted:
@@ -188,11 +128,11 @@ def rolled_back(shape: Shape, source: DeformableSurface, target: DeformableSurfa
         The same, with parts of the body turned where that makes them fit better; `positions` themselves if there are
         none, or if the body is not long.  And other ways to turn all of its vertices.
     """
-    return _turned_back(_long_body(shape, source), source, target, positions, _GAIN)
+    return _turned_back(long_body(shape, source), source, target, positions, _GAIN)
 
 
 def _turned_back(
-    limbs: list[_Limb], source: DeformableSurface, target: DeformableSurface, positions: Floats, gain: float
+    limbs: list[Limb], source: DeformableSurface, target: DeformableSurface, positions: Floats, gain: float
 ) -> Untwisted:
     """Turn back limbs that have no vertex in common; the positions themselves if there is nothing to be turned."""
     if not limbs:
@@ -202,7 +142,7 @@ def _turned_back(
     normals = source.search.moved(positions).vertex_normals
     tree = cKDTree(np.concatenate([target.vertices, _NORMAL_LENGTH * target.normals], axis=1))
     for limb in limbs:
-        centres, axes = _axis(positions, limb.rings)
+        centres, axes = axis_of(positions, limb.rings)
         asked, costs, rotations = [], [], []
         for ring, centre, axis in zip(limb.rings, centres, axes, strict=True):
             places, seen = positions[ring.vertices] - centre, normals[ring.vertices]
@@ -227,109 +167,6 @@ def _turned_back(
             turned = turned.copy() if turned is positions else turned
             turned[limb.vertices] = _moved(limb, centres, axes, angles, positions)
     return Untwisted(turned, otherwise)
-
-
-def _limbs(shape: Shape, source: DeformableSurface) -> list[_Limb]:
-    """Find limbs and the rings around them, as far as they are no wider than limbs are; no vertex is in two of them."""
-    tips = spread_extremities(shape, _LIMBS, _APART, filled=False)
-    found = []
-    for row in shape.samples.rows[tips].astype(np.float64):
-        rings = _rings(source, row, _LONGEST)
-        if len(rings) >= _FEWEST_RINGS:
-            radii = _radii(source, rings)
-            chosen = _stout(radii[: _slender(radii)])
-            found.append((row, rings[chosen], radii[chosen]))
-    claims = np.full((len(found), len(source.vertices)), np.inf)
-    for claim, (row, rings, radii) in zip(claims, found, strict=True):
-        near = row < rings[-1].distance
-        claim[near] = row[near] * np.interp(row[near], [ring.distance for ring in rings], radii) ** 3
-    limbs = []
-    for number, (row, rings, radii) in enumerate(found):
-        # What two limbs reach is of the one that is thinner there; if they are alike, whose tip is nearer.
-        others = np.delete(claims, number, axis=0).min(axis=0, initial=np.inf)
-        lost = np.isfinite(claims[number]) & (others <= claims[number])
-        kept = [ring.weights @ ~lost[ring.vertices] > _MOSTLY for ring in rings]
-        own = rings[: kept.index(False) if False in kept else len(kept)]
-        if len(own) >= _FEWEST_RINGS:
-            inside = np.flatnonzero((row < own[-1].distance) & ~lost)
-            limbs.append(_Limb(inside, row[inside], own, radii[: len(own)], held=True))
-    return limbs
-
-
-def _slender(radii: Floats) -> int:
-    """How many of the rings of these radii (k,), from the tip on, are of the limb: the others are of the body."""
-    # A hand is wider than its fingers, but the forearm is not: only what is wide from there on is the body.
-    last = 0
-    for number in range(1, len(radii)):
-        if radii[number] <= _WIDER * np.median(radii[:number]):
-            last = number
-        elif number - last > _WIDE_RINGS:
-            break
-    return last + 1
-
-
-def _stout(radii: Floats) -> slice:
-    """Which rings of a limb say how it is turned: all but those at the tip that are so thin that any turn is cheap."""
-    return slice(int(np.argmax(radii >= _THIN * np.median(radii))), len(radii))
-
-
-def _long_body(shape: Shape, source: DeformableSurface) -> list[_Limb]:
-    """Take a body that is long for a limb; empty if it is not."""
-    values = shape.spectrum.values
-    if values[2] < _LONG * values[1]:
-        return []
-    lengths = _lengthwise(shape)
-    rings = _rings(source, lengths, float(lengths.max()))
-    if len(rings) < _FEWEST_RINGS:
-        return []
-    return [_Limb(np.arange(len(lengths)), lengths, rings, _radii(source, rings), held=False)]
-
-
-def _lengthwise(shape: Shape) -> Floats:
-    """Lengths, in sqrt(area), along a body up to each vertex, (n,): the first eigenfunction, made to grow evenly."""
-    # Distances from an end would not do: a whale's fluke has two.
-    function = shape.spectrum.functions[:, 1]
-    gradients = tangent_gradient(shape.mesh, np.arange(len(function))) @ function
-    slopes = np.linalg.norm(gradients.reshape(-1, 2), axis=1) * shape.scale
-    edges = np.linspace(function.min(), function.max(), _SLICES + 1)
-    slices = np.clip(np.searchsorted(edges, function) - 1, 0, _SLICES - 1)
-    areas = np.bincount(slices, shape.mesh.vertex_areas, _SLICES)
-    sums = np.bincount(slices, shape.mesh.vertex_areas * slopes, _SLICES)
-    known = np.flatnonzero(sums > 0)
-    steepness = np.interp(np.arange(_SLICES), known, sums[known] / areas[known])
-    return np.interp(function, edges, np.append(0, np.cumsum(np.diff(edges) / steepness)))
-
-
-def _rings(source: DeformableSurface, distances: Floats, length: float) -> list[_Ring]:
-    """Cut a surface into rings by the distances (n,) from the tip of a limb, up to where some are missing."""
-    rings: list[_Ring] = []
-    for distance in (np.arange(int(length / _WIDTH)) + 0.5) * _WIDTH:
-        away = np.abs(distances - distance)
-        around = np.flatnonzero(away < _WIDTH)
-        if len(around) >= _FEWEST_VERTICES:
-            mass = source.mass[around]
-            area = float(source.mass[away < _WIDTH / 2].sum())
-            rings.append(_Ring(float(distance), around, mass / mass.sum(), area))
-        elif rings:
-            break
-    return rings
-
-
-def _radii(source: DeformableSurface, rings: list[_Ring]) -> Floats:
-    """Root mean square distances of rings from the axis through their centres, at rest, (k,)."""
-    centres, axes = _axis(source.vertices, rings)
-    radii = []
-    for ring, centre, axis in zip(rings, centres, axes, strict=True):
-        places = source.vertices[ring.vertices] - centre
-        across = np.square(places).sum(axis=1) - np.square(places @ axis)
-        radii.append(float(np.sqrt(max(ring.weights @ across, _POINT))))
-    return np.array(radii)
-
-
-def _axis(positions: Floats, rings: list[_Ring]) -> tuple[Floats, Floats]:
-    """Centres (k, 3) of rings, and unit vectors (k, 3) along the curve through them."""
-    centres = np.array([ring.weights @ positions[ring.vertices] for ring in rings])
-    return centres, unit_vectors(np.gradient(centres, axis=0))
 
 
 def _turned(vectors: Floats, axis: Floats) -> Floats:
@@ -357,17 +194,18 @@ def _twists(rotations: Floats, axes: Floats) -> Floats:
     return (angles + np.pi) % (2 * np.pi) - np.pi
 
 
-def _best_angles(limb: _Limb, costs: Floats, twists: Floats, gain: float) -> tuple[Floats, list[Floats]]:
+def _best_angles(limb: Limb, costs: Floats, twists: Floats, gain: float) -> tuple[Floats, list[Floats]]:
     """Find the angles (k,) of least cost to turn the rings by, all zero if they save no more than a gain, and others.
 
-    The gain is a part of the cost as it is.  The others are the best that turn the tip otherwise, or the other end if
-    that is not held, by a third of a turn or more, if these cost little more.
+    The gain is a part of the cost as it is, or of what that can be less if the limb forks.  The others are the best
+    that turn the tip otherwise, or the other end if that is not held, by a third of a turn or more, if these cost
+    little more.
     """
     steps = np.arange(-_TURNS * _ANGLES, _TURNS * _ANGLES + 1)
     tried, costs = steps * (2 * np.pi / _ANGLES), costs[:, steps % _ANGLES]
     # Where a limb widens there is a joint, which turns more easily than a tube so wide.
     radii = np.minimum(limb.radii, np.median(limb.radii))
-    stiffness = np.pi * ((radii[1:] + radii[:-1]) / 2) ** 3 / _WIDTH
+    stiffness = np.pi * ((radii[1:] + radii[:-1]) / 2) ** 3 / SPACING
     differences = tried[None, :] - tried[:, None]  # the next ring's angle less this one's
     # Angles of the last ring: all within a turn, and one more at either side, to tell which are minima.
     last = np.flatnonzero(np.abs(steps) <= (0 if limb.held else _ANGLES // 2 + 1))
@@ -395,7 +233,8 @@ def _best_angles(limb: _Limb, costs: Floats, twists: Floats, gain: float) -> tup
     ways = ways[np.argsort(total[minima], kind="stable")]
     least, unturned = total[tuple(ways[0])], int(np.flatnonzero(steps == 0)[0])
     now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
-    turning = least <= (1 - gain) * now
+    base = costs.min(axis=1).sum() if limb.is_forked else 0.0
+    turning = least - base <= (1 - gain) * (now - base)
     taken = [ways[0] if turning else np.array([np.flatnonzero(last == unturned)[0], unturned])]
     # Whatever the angles, rings fit no better than that.  Of a body that is not held, none may be what it is to be.
     sure = costs.min(axis=1).sum() if limb.held else 0.0
@@ -411,7 +250,7 @@ def _best_angles(limb: _Limb, costs: Floats, twists: Floats, gain: float) -> tup
     return chosen, [angles(*way) for way in taken[1:]]
 
 
-def _moved(limb: _Limb, centres: Floats, axes: Floats, angles: Floats, positions: Floats) -> Floats:
+def _moved(limb: Limb, centres: Floats, axes: Floats, angles: Floats, positions: Floats) -> Floats:
     """Turn a limb: each vertex by the angle, and about the axis, between those of the rings beside it, (v, 3)."""
     centre, axis = (_between(limb, values) for values in (centres, axes))
     angle = np.interp(limb.distances, [ring.distance for ring in limb.rings], angles)
@@ -419,7 +258,7 @@ def _moved(limb: _Limb, centres: Floats, axes: Floats, angles: Floats, positions
     return centre + turns.apply(positions[limb.vertices] - centre)
 
 
-def _between(limb: _Limb, values: Floats) -> Floats:
+def _between(limb: Limb, values: Floats) -> Floats:
     """Interpolate values (k, 3) at the rings for the vertices, (v, 3)."""
     at = [ring.distance for ring in limb.rings]
     return np.stack([np.interp(limb.distances, at, column) for column in values.T], axis=1)

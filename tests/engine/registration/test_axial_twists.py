@@ -9,7 +9,7 @@ from engine import Shape, TriangleMesh, run
 from engine.geometry.laplacian import laplace_beltrami
 from engine.registration.axial_twists import rolled_back, untwisted
 from engine.registration.deformable import DeformableSurface
-from tests.bodies import fish
+from tests.bodies import fish, forked
 from tests.shapes import icosphere, rotation
 
 BEND = 1.5
@@ -105,6 +105,19 @@ def test_a_hand_is_turned_back_though_it_is_wider_than_its_finger():
     after = mean_distance(target, untwisted(shape(mesh), target, target, wrong).positions, target.vertices)
     assert before > 0.004
     assert after < 0.6 * before
+
+
+def test_a_limb_whose_prongs_have_changed_places_is_turned_back_at_its_stem():
+    vertices, triangles = forked(stem=0.06)
+    target = surface(TriangleMesh(vertices, triangles))
+    wrong = on_surface(target, target.in_unit_size(twisted(vertices, np.pi, begin=0.3, length=0.4)))
+    before = mean_distance(target, wrong, target.vertices)
+    after = untwisted(shape(TriangleMesh(vertices, triangles)), target, target, wrong, isometry=0.0).positions
+    outer = vertices[:, 0] > 1
+    assert before > 0.05
+    assert (np.sign(wrong[outer, 1]) != np.sign(vertices[outer, 1])).mean() > 0.9
+    assert (np.sign(after[outer, 1]) == np.sign(vertices[outer, 1])).all()
+    assert mean_distance(target, after, target.vertices) < 0.2 * before
 
 
 def test_limbs_of_another_build_are_turned_only_if_that_saves_much():
