@@ -119,6 +119,7 @@ MECHANISMS = {
             lambda _: lambda _x, _s, _t, positions, _i=1.0: SimpleNamespace(positions=positions, otherwise=[]),
         )
     ],
+    "forked limbs": [("engine.registration.axial_twists.forked_limbs", lambda _: lambda *_given: [])],
     "other windings": [(f"{R}.untwisted", lambda own: lambda *given: own(*given)._replace(otherwise=[]))],
     "close contest": [(f"{room}.contenders", lambda own: lambda *given: own(*given)[:1]) for room in (D, Q)],
     "agreeing in turns": [(f"{R}.Follower.settled_steps", agreeing_already)],
