@@ -233,11 +233,13 @@ def _best_angles(limb: Limb, costs: Floats, twists: Floats, gain: float) -> tupl
     ways = ways[np.argsort(total[minima], kind="stable")]
     least, unturned = total[tuple(ways[0])], int(np.flatnonzero(steps == 0)[0])
     now = costs[:, unturned].sum() + (stiffness * np.square(twists)).sum()
-    base = costs.min(axis=1).sum() if limb.is_forked else 0.0
+    # Whatever the angles, rings fit no better than that.
+    best = costs.min(axis=1).sum()
+    base = best if limb.is_forked else 0.0
     turning = least - base <= (1 - gain) * (now - base)
     taken = [ways[0] if turning else np.array([np.flatnonzero(last == unturned)[0], unturned])]
-    # Whatever the angles, rings fit no better than that.  Of a body that is not held, none may be what it is to be.
-    sure = costs.min(axis=1).sum() if limb.held else 0.0
+    # Of a body that is not held, none of the angles may be what it is to be.
+    sure = best if limb.held else 0.0
     nearly, most = (_NEARLY, _MOST_OTHERS) if limb.held else (_LYING, _MOST_LYING)
     turns = np.arange(1) if limb.held else np.arange(-1, 2)
     for way in ways:

@@ -37,7 +37,8 @@ _MOSTLY = 0.5
 """Part of a ring that must be of a limb, and not of another one, for the limb to go on."""
 
 _STEM = 1.5
-"""How many times as wide as all prongs together the stem of a forked limb is at joints; wider is the body."""
+"""How many times as wide as all prongs together the stem of a forked limb is at joints; wider is the body (by
+hand)."""
 
 _THIN = 0.5
 """Part of the median radius of its rings up to which a limb has its tip."""
